@@ -92,7 +92,7 @@ World with_legs(World world, int legs) {
   return world;
 }
 
-Recording record_in(const World& world, const std::vector<Effect>& effects) {
+DrivenRecording record_in(const World& world, const std::vector<Effect>& effects) {
   SimulatedEffects acting;
   acting.effects = effects;
   SimulatedDrive drive =

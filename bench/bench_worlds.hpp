@@ -34,7 +34,7 @@ enum class Survey { yes, no, either };
 [[nodiscard]] World with_legs(World world, int legs);
 
 /// The world's recording with these effects (channel, shape and coefficients given).
-[[nodiscard]] Recording record_in(const World& world, const std::vector<Effect>& effects);
+[[nodiscard]] DrivenRecording record_in(const World& world, const std::vector<Effect>& effects);
 
 /// An effect and what it needs to be shown.
 struct Subject {

@@ -101,7 +101,7 @@ Outcome identify_subject(const Options& options, double times, std::size_t e) {
     truth.coefficients = sized(subject, world, tests, times, seed);
     if (truth.coefficients.empty()) continue;
     ++done;
-    const std::vector<Recording> recordings{record_in(world, {truth})};
+    const std::vector<DrivenRecording> recordings{record_in(world, {truth})};
     ++tally.shown;
     Discovery ladder;
     if (options.ladder) ladder = discover(recordings, world.model);

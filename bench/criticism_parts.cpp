@@ -159,7 +159,7 @@ void cost() {
   const World world = draw_world(1, Survey::yes);
   for (const int legs : {180, 600, 2000, 10000}) {
     const World here = with_legs(world, legs);
-    const std::vector<Recording> recordings{record_in(here, {})};
+    const std::vector<DrivenRecording> recordings{record_in(here, {})};
     std::optional<ModelFit> fit;
     const double fitting = seconds([&] { fit = fit_model(recordings, here.model); });
     std::optional<ScoreTest> tests;

@@ -29,12 +29,13 @@ struct Count {
 };
 
 /// The drive's noise, and its recording with g of this channel.
-Recording drawn(testing::OtherDrive& drive, Channel channel, double g, std::mt19937_64& random) {
+DrivenRecording drawn(testing::OtherDrive& drive, Channel channel, double g,
+                      std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   Noise& noise = drive.model.noise;
   noise.left = noise.right = 0.004;
   noise.steer = 0.003;
-  Recording recording = with_wheels(
+  DrivenRecording recording = with_wheels(
       recorded(drive, noisy(drive, with_effect(drive, channel, g), random)), drive.model.robot);
   for (TruthRow& row : recording.truth) {
     row.x += noise.truth * normal(random);
@@ -47,7 +48,7 @@ Recording drawn(testing::OtherDrive& drive, Channel channel, double g, std::mt19
 /// One drive with one constant off.
 void take(testing::OtherDrive drive, Channel channel, std::mt19937_64& random, Count& count) {
   const double g = 0.01 * std::normal_distribution<double>()(random);
-  const Recording recording = drawn(drive, channel, g, random);
+  const DrivenRecording recording = drawn(drive, channel, g, random);
   drive.model.effects.push_back({"hidden", channel, {"1"}, {}, false});
   const ModelFit fit = fit_model({recording}, drive.model);
   const double ratio = fit.chi2 / fit.dof;

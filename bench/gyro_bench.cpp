@@ -4,6 +4,7 @@
 // Many drives with a gyro, compass and survey: which effects of the gyro are named, and what is
 // named where nothing is missing, or where the bias walks at random.
 #include "bench_program.hpp"
+#include "driven.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/noise_fit.hpp"
@@ -40,7 +41,7 @@ Model stated() {
 }
 
 /// As simulate --mesh 4x4 --tours 3 --gyro draws it.
-Recording driven(std::uint64_t seed, double walk, const std::vector<Effect>& effects) {
+DrivenRecording driven(std::uint64_t seed, double walk, const std::vector<Effect>& effects) {
   const Mesh mesh = even_mesh({4, 4}, 5.0);
   std::mt19937_64 random = random_stream(seed, Stream::walk);
   const Tours tours = make_tours(mesh, WalkKind::euler, 3, random);
@@ -48,7 +49,7 @@ Recording driven(std::uint64_t seed, double walk, const std::vector<Effect>& eff
   robot.gyro = true;
   robot.noise.gyro = kGyroNoise;
   robot.noise.gyro_walk = walk;
-  return simulate_drive(mesh, tours.walk, {}, robot, seed, {effects}).recording;
+  return testing::driven(simulate_drive(mesh, tours.walk, {}, robot, seed, {effects}).recording);
 }
 
 bool is_named(const Finding& finding, const std::string& name) {

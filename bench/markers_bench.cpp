@@ -6,6 +6,7 @@
 // intervals hold the truth, is anything named where nothing is missing, and is a camera that is
 // mounted turned named?
 #include "bench_program.hpp"
+#include "driven.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/fit_model.hpp"
@@ -22,7 +23,7 @@ namespace trussmap {
 namespace {
 
 /// The k-th drive of a row, with this of the effects.
-Recording marked_drive(int k, std::uint64_t first_seed, const std::vector<Effect>& effects) {
+DrivenRecording marked_drive(int k, std::uint64_t first_seed, const std::vector<Effect>& effects) {
   const std::uint64_t seed = first_seed + static_cast<std::uint64_t>(k);
   const Mesh mesh = mesh_of_lines({0.0, 4.0, 9.0}, {0.0, 3.0, 7.0});
   std::mt19937_64 random = random_stream(seed, Stream::walk);
@@ -31,7 +32,8 @@ Recording marked_drive(int k, std::uint64_t first_seed, const std::vector<Effect
   robot.markers = true;
   robot.compass = k % 2 == 0;
   robot.range_sensor = k / 2 % 2 == 0;
-  return simulate_drive(mesh, tours.walk, {}, robot, seed, SimulatedEffects{effects}).recording;
+  return testing::driven(
+      simulate_drive(mesh, tours.walk, {}, robot, seed, SimulatedEffects{effects}).recording);
 }
 
 struct Options {

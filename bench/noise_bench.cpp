@@ -15,6 +15,7 @@
 //               and intervals hold there?
 #include "bench_program.hpp"
 #include "bench_worlds.hpp"
+#include "driven.hpp"
 #include "fit/fit_state.hpp"
 #include "fit/replicated_recording.hpp"
 #include "trussmap/discover.hpp"
@@ -260,12 +261,12 @@ void sizes(const Options& options) {
       world.robot.compass = true;
       world.robot.range_sensor = law.range;
       world = with_legs(world, 120);
-      const std::vector<Recording> base{record_in(world, {})};
+      const std::vector<DrivenRecording> base{record_in(world, {})};
       ModelFit fit = fit_model(base, world.model);
       Model rough = world.model;
       law.put_into(rough.noise);
       fit = refit(base, rough, fit);
-      const std::vector<Recording> drawn = replicated(base, *fit.state, seed);
+      const std::vector<DrivenRecording> drawn = replicated(base, *fit.state, seed);
       const FittedNoise noise = fit_model_and_noise(drawn, world.model).noise;
       const auto found = std::find_if(noise.sources.begin(), noise.sources.end(),
                                       [&](const NoiseSource& one) { return one.name == law.name; });
@@ -301,7 +302,7 @@ void sizes(const Options& options) {
 
 void posterior(const Options& options) {
   for (const std::string& folder : options.given) {
-    const std::vector<Recording> recordings{read_recording(folder)};
+    const std::vector<DrivenRecording> recordings{testing::driven(read_recording(folder))};
     const Model given = read_model(std::filesystem::path(folder) / "model.toml");
     DiscoverOptions discovering;
     discovering.diagnosis.fit = as_the_command_has_it();
@@ -313,7 +314,7 @@ void posterior(const Options& options) {
     std::map<std::string, Coverage> intervals;
     std::vector<double> p_values;
     for (int k = 0; k < options.drawn; ++k) {
-      const std::vector<Recording> drawn =
+      const std::vector<DrivenRecording> drawn =
           replicated(recordings, *found.found.state, options.first + static_cast<std::uint64_t>(k));
       const ModelFit fit = fit_model(drawn, asked, discovering.diagnosis.fit);
       p_values.push_back(fit.p_value);

@@ -7,6 +7,7 @@
 //   world, a tour a day --simulate_drive--> days 1 ... N --SummarisedFit::add--> map
 //                                                  day N + 1 --add--> its processor time
 //                                            days 1 ... N + 1 --fit_model--> its processor time
+#include "driven.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/fit_model.hpp"
 #include "trussmap/simulation.hpp"
@@ -47,18 +48,18 @@ double processor_seconds(const auto& work) {
   return static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
 }
 
-std::vector<Recording> days_of(const Options& options, int count) {
+std::vector<DrivenRecording> days_of(const Options& options, int count) {
   const Mesh mesh = even_mesh({options.side, options.side}, 5.0);
   WheeledRobot robot;
   robot.compass = !options.no_compass;
   robot.gyro = options.gyro;
   robot.range_sensor = options.range;
-  std::vector<Recording> days;
+  std::vector<DrivenRecording> days;
   for (int day = 0; day < count; ++day) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(day);
     std::mt19937_64 random = random_stream(seed, Stream::walk);
     const Tours tours = make_tours(mesh, WalkKind::euler, options.tours, random);
-    days.push_back(simulate_drive(mesh, tours.walk, {}, robot, seed).recording);
+    days.push_back(testing::driven(simulate_drive(mesh, tours.walk, {}, robot, seed).recording));
     days.back().name = fmt::format("day {}", day + 1);
     if (!options.survey) days.back().survey.clear();
   }
@@ -88,7 +89,7 @@ double median_sd(const SummarisedFit& fit) {
 }
 
 void run(const Options& options) {
-  const std::vector<Recording> days = days_of(options, options.days + options.further);
+  const std::vector<DrivenRecording> days = days_of(options, options.days + options.further);
   Model model;
   for (const std::string& name : options.effects) {
     model.effects.push_back(catalogue_effect(name));

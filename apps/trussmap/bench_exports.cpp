@@ -97,7 +97,7 @@ std::string commands(const BenchView& view, const BenchOrigin& origin) {
 
 std::string odometry(const BenchView& view) {
   const Robot& robot = view.now.fit().model.robot;
-  const Recording& first = view.now.recordings().front();
+  const DrivenRecording& first = view.now.recordings().front();
   std::vector<std::string> covariates;
   for (const Covariate& one : first.drive.covariates) covariates.push_back("\"" + one.name + "\"");
   const bool two = robot.drive == DriveKind::differential;

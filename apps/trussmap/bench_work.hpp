@@ -27,7 +27,7 @@
 namespace trussmap::app {
 
 struct BenchJob {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   Model model;  ///< as given
   DiagnoseOptions options;
   std::string subject;           ///< recordings and model, for people

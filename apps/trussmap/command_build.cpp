@@ -139,10 +139,10 @@ void run_store(const BuildOptions& options) {
 }
 
 /// A map file would be empty.
-void check_landmarks(const BuildOptions& options, const std::vector<Recording>& recordings) {
+void check_landmarks(const BuildOptions& options, const std::vector<DrivenRecording>& recordings) {
   if (options.out.empty() && options.csv.empty()) return;
   const bool none = std::all_of(recordings.begin(), recordings.end(),
-                                [](const Recording& one) { return one.sightings.empty(); });
+                                [](const DrivenRecording& one) { return one.sightings.empty(); });
   if (!none) return;
   throw UsageError("no landmark was sighted, so that there is no map for " +
                    std::string(options.out.empty() ? "--csv" : "--out") +
@@ -154,11 +154,11 @@ void run_build(const BuildOptions& options) {
   if (!options.store.empty()) return run_store(options);
   Progress progress({{"reading", 30}, {"building the map", 70}});
   progress.next();
-  std::vector<Recording> recordings = read_recordings(options.recordings);
-  const Model model = read_model(options.model, recordings);
-  take_wheels(recordings, model.robot);
+  const std::vector<Recording> read = read_recordings(options.recordings);
+  const Model model = read_model(options.model, read);
+  const std::vector<DrivenRecording> recordings = with_wheels(read, model.robot);
   check_landmarks(options, recordings);
-  warn_of_mistakes(recordings, model, options.model);
+  warn_of_mistakes(read, model, options.model);
   progress.next();
   const BuiltMap built = [&] {
     try {

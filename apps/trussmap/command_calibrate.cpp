@@ -52,10 +52,10 @@ CalibrationOptions calibration_options(const CalibrateOptions& options) {
   return result;
 }
 
-TestedDrives tested(const std::vector<Recording>& recordings, const Model& nominal,
+TestedDrives tested(const std::vector<DrivenRecording>& recordings, const Model& nominal,
                     const WheelCalibration& found) {
   TestedDrives result;
-  for (const Recording& one : recordings) result.names.push_back(one.name);
+  for (const DrivenRecording& one : recordings) result.names.push_back(one.name);
   result.nominal = drive_errors(recordings, nominal);
   result.calibrated = drive_errors(recordings, found.model, found.truth);
   return result;
@@ -137,12 +137,12 @@ ordered_json json_of(const WheelCalibration& found, const CalibrationValidation&
 void run_calibrate(const CalibrateOptions& options) {
   Progress progress({{"reading", 10}, {"calibrating", 45}, {"predicting held-out legs", 45}});
   progress.next();
-  std::vector<Recording> recordings = read_recordings(options.recordings);
-  std::vector<Recording> test_drives = read_recordings(options.test);
-  const Model model = read_model(options.model, recordings);
-  take_wheels(recordings, model.robot);
-  take_wheels(test_drives, model.robot);
-  warn_of_mistakes(recordings, model, options.model);
+  const std::vector<Recording> read = read_recordings(options.recordings);
+  const Model model = read_model(options.model, read);
+  const std::vector<DrivenRecording> recordings = with_wheels(read, model.robot);
+  const std::vector<DrivenRecording> test_drives =
+      with_wheels(read_recordings(options.test), model.robot);
+  warn_of_mistakes(read, model, options.model);
   WheelCalibration found;
   CalibrationValidation held;
   std::optional<TestedDrives> test;

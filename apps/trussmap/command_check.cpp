@@ -40,11 +40,9 @@ std::string json_text(const std::vector<CheckFinding>& findings) {
 }
 
 void run_check(const CheckCommand& options) {
-  std::vector<Recording> recordings = read_recordings(options.recordings);
+  const std::vector<Recording> recordings = read_recordings(options.recordings);
   std::optional<Model> model;
   if (!options.model.empty()) model = read_model(options.model, recordings);
-  // Named columns are the check's own affair: it knows angles that lead nowhere.
-  if (!model || model->robot.columns.empty()) take_wheels(recordings, Robot());
   const std::vector<CheckFinding> findings =
       check_recordings(recordings, model ? &*model : nullptr, options.model);
   if (!options.json.empty()) write_files({{options.json, json_text(findings)}});

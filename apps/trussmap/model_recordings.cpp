@@ -112,16 +112,12 @@ std::vector<Recording> read_recordings(const std::vector<std::string>& folders) 
   return result;
 }
 
-void take_wheels(std::vector<Recording>& recordings, const Robot& robot) {
-  for (Recording& one : recordings) one = with_wheels(std::move(one), robot);
-}
-
 ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
-  std::vector<Recording> recordings = read_recordings(options.recordings);
-  Model model = read_model(options.model, recordings);
-  take_wheels(recordings, model.robot);
-  check_stretches(recordings, options.exclude);
-  warn_of_mistakes(recordings, model, options.model);
+  const std::vector<Recording> read = read_recordings(options.recordings);
+  Model model = read_model(options.model, read);
+  std::vector<DrivenRecording> recordings = with_wheels(read, model.robot);
+  check_stretches(read, options.exclude);
+  warn_of_mistakes(read, model, options.model);
   PreparedRecordings prepared =
       prepare_recordings(std::move(recordings), model, fit_options(options), options.every);
   return {std::move(model), std::move(prepared.recordings), std::move(prepared.notes)};

@@ -41,14 +41,12 @@ void add_stated_noise(const Command& command, ModelRecordingsOptions& options);
 
 struct ModelRecordings {
   Model model;
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   std::vector<std::string> notes;  ///< what of the recordings is not used, and why
 };
 
 /// One recording per folder, in their order. Throws InputError.
 [[nodiscard]] std::vector<Recording> read_recordings(const std::vector<std::string>& folders);
-/// Each as with_wheels makes it.
-void take_wheels(std::vector<Recording>& recordings, const Robot& robot);
 
 /// Reads them, and thins out frames whose errors last from one to the next (fit_model.hpp).
 /// Throws InputError, with the model file's line where an effect cannot be applied.

@@ -57,14 +57,14 @@ MapStore opened(const StoreSessions& options) {
 }
 
 /// The first session says whose axes the map has.
-MapAxes axes_of(MapStore& store, const Recording& recording) {
+MapAxes axes_of(MapStore& store, const DrivenRecording& recording) {
   if (store.builder().landmarks() == 0) {
     store.set_note(kAxes, recording.drive.has_compass() ? "compass" : "landmarks");
   }
   return store.note(kAxes) == "compass" ? MapAxes::compass : MapAxes::landmarks;
 }
 
-BuiltMap added(MapStore& store, const std::string& key, const Recording& recording,
+BuiltMap added(MapStore& store, const std::string& key, const DrivenRecording& recording,
                const Model& model, const StoreSessions& options) {
   const MapAxes axes = axes_of(store, recording);
   BuiltMap built;
@@ -87,7 +87,7 @@ std::string verdict_of_session(const BuiltMap& built) {
       built.quality.from_adjusted);
 }
 
-void print_session(const Recording& recording, const BuiltMap& built) {
+void print_session(const DrivenRecording& recording, const BuiltMap& built) {
   fmt::print("{}: {} legs, {} new landmarks\n", recording.name, built.legs, built.new_landmarks);
   fmt::print("  {}\n",
              verdict_text(built.good() ? Mood::good : Mood::doubt, verdict_of_session(built)));
@@ -101,13 +101,13 @@ void print_session(const Recording& recording, const BuiltMap& built) {
 }  // namespace
 
 void add_sessions(const StoreSessions& options) {
-  std::vector<Recording> recordings = read_recordings(options.recordings);
-  const Model model = read_model(options.model, recordings);
-  take_wheels(recordings, model.robot);
-  warn_of_mistakes(recordings, model, options.model);
+  const std::vector<Recording> read = read_recordings(options.recordings);
+  const Model model = read_model(options.model, read);
+  const std::vector<DrivenRecording> recordings = with_wheels(read, model.robot);
+  warn_of_mistakes(read, model, options.model);
   MapStore store = opened(options);
   Json sessions = Json::array();
-  for (const Recording& recording : recordings) {
+  for (const DrivenRecording& recording : recordings) {
     const std::string key = fingerprint(recording);
     if (store.has_session(key)) {
       fmt::print("{}: is in the store already, nothing added\n", recording.name);

@@ -182,16 +182,25 @@ enum class MapAxes {
 /// for its map, which is the builder's. Of the options the gate and min_drive count. Throws as
 /// build_map does, and SolveError where a recording would have to be turned and shares fewer than
 /// two landmarks with the map; the builder may have taken some of the legs then.
-[[nodiscard]] BuiltMap extend_map(MapBuilder& builder, const Recording& recording,
+[[nodiscard]] BuiltMap extend_map(MapBuilder& builder, const DrivenRecording& recording,
                                   const Model& model, MapAxes axes,
                                   const BuildMapOptions& options = {});
+[[nodiscard]] inline BuiltMap extend_map(MapBuilder& builder, const Recording& recording,
+                                         const Model& model, MapAxes axes,
+                                         const BuildMapOptions& options = {}) {
+  return extend_map(builder, with_wheels(recording, model.robot), model, axes, options);
+}
 
 /// Builds one map from the sessions, or the path where none sights a landmark (by the method
 /// adjustment alone). Throws InputError where a recording has no sightings (and others do, or it
 /// has neither fixes nor loops) or there is no leg, SolveError where a session or a landmark is
 /// tied to nothing, std::invalid_argument on options out of range, on a recording that is not as
 /// recording.hpp has it and, naming it, on an effect that cannot be applied.
-[[nodiscard]] BuiltMap build_map(const std::vector<Recording>& recordings, const Model& model,
+[[nodiscard]] BuiltMap build_map(const std::vector<DrivenRecording>& recordings, const Model& model,
                                  const BuildMapOptions& options = {});
+[[nodiscard]] inline BuiltMap build_map(const std::vector<Recording>& recordings,
+                                        const Model& model, const BuildMapOptions& options = {}) {
+  return build_map(with_wheels(recordings, model.robot), model, options);
+}
 
 }  // namespace trussmap

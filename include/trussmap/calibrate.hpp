@@ -108,9 +108,14 @@ struct WheelCalibration {
 /// Effects of `model` other than the three are taken out of the recordings first. Throws SolveError
 /// where nothing can be determined or a ratio such as E_b is not positive, std::invalid_argument on
 /// effects that cannot be applied.
-[[nodiscard]] WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings,
+[[nodiscard]] WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
                                                 const Model& model,
                                                 const CalibrationOptions& options = {});
+[[nodiscard]] inline WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings,
+                                                       const Model& model,
+                                                       const CalibrationOptions& options = {}) {
+  return calibrate_wheels(with_wheels(recordings, model.robot), model, options);
+}
 
 /// What a second odometer on the same robot measured while `drive` was driven, as loops for
 /// calibrate_wheels: its motions one after the other, each from row to row of its own drive and
@@ -119,7 +124,8 @@ struct WheelCalibration {
 /// same clock. Throws std::invalid_argument where the two drives have less than `every` s in
 /// common, and like with_wheels.
 [[nodiscard]] std::vector<Loop> second_odometer_loops(const Recording& second, const Model& model,
-                                                      const Drive& drive, double every = 1.0);
+                                                      const DriveColumns& drive,
+                                                      double every = 1.0);
 
 // Validation: how well a calibration predicts legs that it has not seen.
 //
@@ -165,9 +171,14 @@ struct CalibrationValidation {
 
 /// No legs without truth in use, with a holdout of 0, and where what is left of the recordings is
 /// too little to calibrate by. Throws std::invalid_argument on effects that cannot be applied.
-[[nodiscard]] CalibrationValidation validate_calibration(const std::vector<Recording>& recordings,
-                                                         const Model& model,
-                                                         const CalibrationOptions& options = {});
+[[nodiscard]] CalibrationValidation validate_calibration(
+    const std::vector<DrivenRecording>& recordings, const Model& model,
+    const CalibrationOptions& options = {});
+[[nodiscard]] inline CalibrationValidation validate_calibration(
+    const std::vector<Recording>& recordings, const Model& model,
+    const CalibrationOptions& options = {}) {
+  return validate_calibration(with_wheels(recordings, model.robot), model, options);
+}
 
 /// Dead reckoning of one whole drive, from the pose of the first truth row to the time of the last.
 struct DriveError {
@@ -180,12 +191,16 @@ struct DriveError {
 
 /// One per recording, of the point that the truth tracks. Throws InputError where one has fewer
 /// than two truth rows in its drive.
-[[nodiscard]] std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings,
+[[nodiscard]] std::vector<DriveError> drive_errors(const std::vector<DrivenRecording>& recordings,
                                                    const Model& model);
+[[nodiscard]] inline std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings,
+                                                          const Model& model) {
+  return drive_errors(with_wheels(recordings, model.robot), model);
+}
 
 /// The same, where a calibration has found how the truth is mounted: where the tracked point is on
 /// the robot, and how its heading is turned. Clocks are of single recordings, and stay.
-[[nodiscard]] std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings,
+[[nodiscard]] std::vector<DriveError> drive_errors(const std::vector<DrivenRecording>& recordings,
                                                    const Model& model, const TruthAlignment& truth);
 
 /// Root mean squares over the drives, of which there is at least one.

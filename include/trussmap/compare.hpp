@@ -157,12 +157,20 @@ struct Comparison {
 };
 
 /// Throws like fit_model.
-[[nodiscard]] Comparison compare(const std::vector<Recording>& recordings, const Model& model,
+[[nodiscard]] Comparison compare(const std::vector<DrivenRecording>& recordings, const Model& model,
                                  const CompareOptions& options = {});
+[[nodiscard]] inline Comparison compare(const std::vector<Recording>& recordings,
+                                        const Model& model, const CompareOptions& options = {}) {
+  return compare(with_wheels(recordings, model.robot), model, options);
+}
 
 /// The same where the fit of these recordings is there already, with coefficients held or not.
-[[nodiscard]] Comparison compare(const std::vector<Recording>& recordings, const ModelFit& fit,
-                                 const CompareOptions& options = {});
+[[nodiscard]] Comparison compare(const std::vector<DrivenRecording>& recordings,
+                                 const ModelFit& fit, const CompareOptions& options = {});
+[[nodiscard]] inline Comparison compare(const std::vector<Recording>& recordings,
+                                        const ModelFit& fit, const CompareOptions& options = {}) {
+  return compare(with_wheels(recordings, fit.model.robot), fit, options);
+}
 
 /// A model's effects fitted, beside the same robot without them.
 struct EffectGain {
@@ -174,7 +182,7 @@ struct EffectGain {
 };
 
 /// `without` is a fit of the model without effects. Throws like fit_model.
-[[nodiscard]] EffectGain gain_of_effects(const std::vector<Recording>& recordings,
+[[nodiscard]] EffectGain gain_of_effects(const std::vector<DrivenRecording>& recordings,
                                          const ModelFit& without, const ModelFit& with,
                                          const LegOptions& legs = {});
 

@@ -42,7 +42,7 @@ struct InitialHeading {
 
 /// Heading at time `t` in map axes: the first compass reading from there on, less the turn up to
 /// it. Without a compass: 0, exactly, which makes this heading the map's +x direction.
-[[nodiscard]] InitialHeading initial_heading(const Drive& drive, double t, const Robot& robot,
+[[nodiscard]] InitialHeading initial_heading(const MotionRows& drive, double t, const Robot& robot,
                                              const Noise& noise);
 
 /// The robot sees a landmark that is the origin: where the robot then is.
@@ -54,18 +54,18 @@ struct InitialHeading {
 /// `slip`: how far it slips to its left in each row of the drive beside what its wheels show, m;
 /// empty: not at all.
 [[nodiscard]] PoseEstimate dead_reckon(
-    const PoseEstimate& start, const Drive& drive, double from, double to, const Robot& robot,
+    const PoseEstimate& start, const MotionRows& drive, double from, double to, const Robot& robot,
     const Noise& noise, double readings_used_until = -std::numeric_limits<double>::infinity(),
     const std::vector<double>& slip = {});
 
 /// Pose at the end of each row, from the first compass heading (else 0) at the origin. The first
 /// heading is as uncertain as that reading leaves it; without a compass it is exact.
 [[nodiscard]] std::vector<PoseEstimate> dead_reckoned_estimates(
-    const Drive& drive, const Robot& robot, const Noise& noise,
+    const MotionRows& drive, const Robot& robot, const Noise& noise,
     const std::vector<double>& slip = {});
 
 /// Their poses alone.
-[[nodiscard]] std::vector<Pose> dead_reckoned_path(const Drive& drive, const Robot& robot,
+[[nodiscard]] std::vector<Pose> dead_reckoned_path(const MotionRows& drive, const Robot& robot,
                                                    const Noise& noise,
                                                    const std::vector<double>& slip = {});
 

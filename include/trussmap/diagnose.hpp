@@ -184,12 +184,16 @@ struct DiagnoseOptions {
 };
 
 /// Throws like fit_model.
-[[nodiscard]] Diagnosis diagnose(const std::vector<Recording>& recordings, const Model& model,
+[[nodiscard]] Diagnosis diagnose(const std::vector<DrivenRecording>& recordings, const Model& model,
                                  const DiagnoseOptions& options = {});
+[[nodiscard]] inline Diagnosis diagnose(const std::vector<Recording>& recordings,
+                                        const Model& model, const DiagnoseOptions& options = {}) {
+  return diagnose(with_wheels(recordings, model.robot), model, options);
+}
 
 /// The same where the fit of these recordings is there already.
-[[nodiscard]] Diagnosis diagnose(const std::vector<Recording>& recordings, const ModelFit& fit,
-                                 const DiagnoseOptions& options = {});
+[[nodiscard]] Diagnosis diagnose(const std::vector<DrivenRecording>& recordings,
+                                 const ModelFit& fit, const DiagnoseOptions& options = {});
 
 /// An unexplained misfit of chi^2 as a whole that noise alone makes in more than one of a thousand
 /// recordings: too little to prefer another model for.

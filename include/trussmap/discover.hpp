@@ -75,7 +75,11 @@ struct DiscoverOptions {
 };
 
 /// Throws like fit_model.
-[[nodiscard]] Discovery discover(const std::vector<Recording>& recordings, const Model& model,
+[[nodiscard]] Discovery discover(const std::vector<DrivenRecording>& recordings, const Model& model,
                                  const DiscoverOptions& options = {});
+[[nodiscard]] inline Discovery discover(const std::vector<Recording>& recordings,
+                                        const Model& model, const DiscoverOptions& options = {}) {
+  return discover(with_wheels(recordings, model.robot), model, options);
+}
 
 }  // namespace trussmap

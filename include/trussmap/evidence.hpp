@@ -118,16 +118,16 @@ struct DiscoveryEvidence {
 /// `fit` is the one compared.
 [[nodiscard]] ComparisonEvidence evidence_of(const ModelFit& fit, const Comparison& comparison);
 
-[[nodiscard]] FitEvidence evidence_of(const std::vector<Recording>& recordings,
+[[nodiscard]] FitEvidence evidence_of(const std::vector<DrivenRecording>& recordings,
                                       const EffectGain& gain, const CompareOptions& options);
 
 /// `fit` is the one diagnosed, with these options. Throws like fit_model.
-[[nodiscard]] DiagnosisEvidence evidence_of(const std::vector<Recording>& recordings,
+[[nodiscard]] DiagnosisEvidence evidence_of(const std::vector<DrivenRecording>& recordings,
                                             const ModelFit& fit, const Diagnosis& diagnosis,
                                             const DiagnoseOptions& options);
 
 /// Throws like fit_model.
-[[nodiscard]] DiscoveryEvidence evidence_of(const std::vector<Recording>& recordings,
+[[nodiscard]] DiscoveryEvidence evidence_of(const std::vector<DrivenRecording>& recordings,
                                             const Discovery& discovery,
                                             const DiagnoseOptions& options);
 

@@ -89,8 +89,12 @@ struct ModelFit {
 /// Throws SolveError where something cannot be determined (a landmark, a pose, sessions that
 /// nothing connects), InputError where a recording has nothing to fit, std::invalid_argument on an
 /// effect that cannot be applied to these recordings.
-[[nodiscard]] ModelFit fit_model(const std::vector<Recording>& recordings, const Model& model,
+[[nodiscard]] ModelFit fit_model(const std::vector<DrivenRecording>& recordings, const Model& model,
                                  const FitOptions& options = {});
+[[nodiscard]] inline ModelFit fit_model(const std::vector<Recording>& recordings,
+                                        const Model& model, const FitOptions& options = {}) {
+  return fit_model(with_wheels(recordings, model.robot), model, options);
+}
 
 // ----------------------------------------
 // Day after day. A session that has been fitted enters the next fit as what it says of landmarks
@@ -133,6 +137,7 @@ class SummarisedFit {
   /// sighted, SolveError where a further session is not tied to the map by two places or by one and
   /// a direction, or brings what gives a position or a direction (truth, fixes, compass, surveyed
   /// landmarks) to a map whose first session had none.
+  void add(const DrivenRecording& recording);
   void add(const Recording& recording);
 
   [[nodiscard]] int sessions() const;
@@ -177,8 +182,12 @@ struct TimedPose {
 /// the readings leave of the first heading, too. Effects act with the coefficients that the model
 /// states, none is fitted. Throws std::invalid_argument, naming the effect, where one cannot be
 /// applied.
-[[nodiscard]] std::vector<TimedPose> dead_reckoned_poses(const Recording& recording,
+[[nodiscard]] std::vector<TimedPose> dead_reckoned_poses(const DrivenRecording& recording,
                                                          const Model& model);
+[[nodiscard]] inline std::vector<TimedPose> dead_reckoned_poses(const Recording& recording,
+                                                                const Model& model) {
+  return dead_reckoned_poses(with_wheels(recording, model.robot), model);
+}
 
 /// By everything that was measured, of one session of a fit, in the map's frame. Covariances are
 /// exact where something was measured (zero where the frame is held); between two such instants
@@ -211,10 +220,10 @@ struct LastingErrors {
 
 /// One frame (sightings of one instant) in so long, from the first on; sightings of a landmark that
 /// the robot stands on stay all.
-[[nodiscard]] std::vector<Recording> thinned_frames(const std::vector<Recording>& recordings,
-                                                    double lasts);
+[[nodiscard]] std::vector<DrivenRecording> thinned_frames(
+    const std::vector<DrivenRecording>& recordings, double lasts);
 
 /// Whether there are enough frames that are near each other, and see the same, for lasting_errors.
-[[nodiscard]] bool has_dense_frames(const std::vector<Recording>& recordings);
+[[nodiscard]] bool has_dense_frames(const std::vector<DrivenRecording>& recordings);
 
 }  // namespace trussmap

@@ -72,7 +72,7 @@ struct FleetRow {
 /// Throws InputError on a date that is none, an effect of the model with coefficients per session,
 /// and like fit_model. Of these recordings alone; a day of several has the same landmarks in all.
 [[nodiscard]] FleetRow fleet_row(const std::string& robot, const std::string& date,
-                                 const std::vector<Recording>& recordings, const Model& model,
+                                 const std::vector<DrivenRecording>& recordings, const Model& model,
                                  const std::string& model_text, const FitOptions& fit = {},
                                  const LegOptions& legs = {});
 

@@ -59,7 +59,11 @@ struct HeldOut : HeldOutMetrics {
 /// Coefficients are estimated anew without the held-out legs, from these recordings, of which `fit`
 /// is. Those that the other legs cannot show stay as they are; legs to landmarks that neither
 /// another leg sees nor a survey knows are passed over. Throws like fit_model.
-[[nodiscard]] HeldOut predict_held_out(const std::vector<Recording>& recordings,
+[[nodiscard]] HeldOut predict_held_out(const std::vector<DrivenRecording>& recordings,
                                        const ModelFit& fit, const LegOptions& legs = {});
+[[nodiscard]] inline HeldOut predict_held_out(const std::vector<Recording>& recordings,
+                                              const ModelFit& fit, const LegOptions& legs = {}) {
+  return predict_held_out(with_wheels(recordings, fit.model.robot), fit, legs);
+}
 
 }  // namespace trussmap

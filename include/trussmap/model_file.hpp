@@ -35,11 +35,11 @@ void write_model(const std::filesystem::path& file, const Model& model);
 // A workbench's log (workbench.hpp) as JSON, with what tells its recordings from others.
 
 [[nodiscard]] std::string format_workbench_log(const WorkbenchLog& log,
-                                               const std::vector<Recording>& recordings);
+                                               const std::vector<DrivenRecording>& recordings);
 
 /// Numbers and models read back exactly. Throws InputError: no such file, no log, or one of other
 /// recordings.
 [[nodiscard]] WorkbenchLog read_workbench_log(const std::filesystem::path& file,
-                                              const std::vector<Recording>& recordings);
+                                              const std::vector<DrivenRecording>& recordings);
 
 }  // namespace trussmap

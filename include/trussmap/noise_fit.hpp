@@ -62,9 +62,15 @@ struct FitWithNoise {
   ModelFit fit;       ///< under the noise found
   FittedNoise noise;  ///< its `gain` is that from the model's noise
 };
-[[nodiscard]] FitWithNoise fit_model_and_noise(const std::vector<Recording>& recordings,
+[[nodiscard]] FitWithNoise fit_model_and_noise(const std::vector<DrivenRecording>& recordings,
                                                const Model& model, const FitOptions& fit = {},
                                                const NoiseFitOptions& options = {});
+[[nodiscard]] inline FitWithNoise fit_model_and_noise(const std::vector<Recording>& recordings,
+                                                      const Model& model,
+                                                      const FitOptions& fit = {},
+                                                      const NoiseFitOptions& options = {}) {
+  return fit_model_and_noise(with_wheels(recordings, model.robot), model, fit, options);
+}
 
 // ----------------------------------------
 // What of dead reckoning's error comes from which noise.
@@ -86,9 +92,15 @@ struct NoiseBudget {
 /// errors that the model's noise lets one expect, linearised along the record. Horizons that no
 /// recording is as long as are left out, and legs where there are none. Throws
 /// std::invalid_argument on a horizon below 0.
-[[nodiscard]] std::vector<NoiseBudget> noise_budget(const std::vector<Recording>& recordings,
+[[nodiscard]] std::vector<NoiseBudget> noise_budget(const std::vector<DrivenRecording>& recordings,
                                                     const Model& model,
                                                     const std::vector<double>& horizons = {
                                                         0.0, 10.0, 30.0});
+[[nodiscard]] inline std::vector<NoiseBudget> noise_budget(const std::vector<Recording>& recordings,
+                                                           const Model& model,
+                                                           const std::vector<double>& horizons = {
+                                                               0.0, 10.0, 30.0}) {
+  return noise_budget(with_wheels(recordings, model.robot), model, horizons);
+}
 
 }  // namespace trussmap

@@ -117,7 +117,7 @@ struct TruthCalibration {
 /// The page with the robot's drive on it: its wheels from above and, where it steers, how far it
 /// steered in these recordings (wheels taken in). Of two wheels the page as it is.
 [[nodiscard]] Page with_drive(const Page& page, const Robot& robot,
-                              const std::vector<Recording>& recordings);
+                              const std::vector<DrivenRecording>& recordings);
 
 /// The page of a workbench: it asks the program that serves it for what it shows. Its content
 /// security policy lets this script run and no other, and ask no other program.

@@ -25,14 +25,20 @@ namespace trussmap {
 [[nodiscard]] FitOptions gated_fit(double gate = kModelGate);
 
 struct PreparedRecordings {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   std::vector<std::string> notes;  ///< what of the recordings is not used, and why
 };
 
-/// Wheels taken in (with_wheels), then thinned out. `every`: s between frames of sightings; 0: all;
-/// absent: as long as their errors are found to last. Throws like with_wheels and fit_model.
-[[nodiscard]] PreparedRecordings prepare_recordings(std::vector<Recording> recordings,
+/// Thinned out. `every`: s between frames of sightings; 0: all;
+/// absent: as long as their errors are found to last. Throws like fit_model.
+[[nodiscard]] PreparedRecordings prepare_recordings(std::vector<DrivenRecording> recordings,
                                                     const Model& model, const FitOptions& fit,
                                                     std::optional<double> every = {});
+[[nodiscard]] inline PreparedRecordings prepare_recordings(std::vector<Recording> recordings,
+                                                           const Model& model,
+                                                           const FitOptions& fit,
+                                                           std::optional<double> every = {}) {
+  return prepare_recordings(with_wheels(std::move(recordings), model.robot), model, fit, every);
+}
 
 }  // namespace trussmap

@@ -5,8 +5,7 @@
 // receiver had it, and what somebody measured independently. Plain data, exactly as in the CSV
 // streams.
 //
-//   drive      one row per odometry interval, which ends at t            columns, one value a row;
-//              of two wheels, or of what with_wheels (model.hpp) makes of other wheels
+//   drive      one row per odometry interval, which ends at t            columns, one value a row
 //   sightings  at time t the robot recognised a landmark
 //   fixes      at time t a receiver (GNSS, UWB tag) had the robot's antenna there
 //   loops      the pose at t2 as the robot measured it from its pose at t (scan matching)
@@ -19,7 +18,6 @@
 // not.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -43,80 +41,30 @@ struct Covariate {
   std::vector<double> values;  ///< one per drive row, in the column's own unit
 };
 
-/// How the gyro's reading of a row was taken into its travels (odometry/wheels_and_gyro.hpp).
-struct GyroShare {
-  double left = 0.0;      ///< m, the wheels' own travels
-  double right = 0.0;     ///< m
-  double excess = 0.0;    ///< rad by which the gyro's turn exceeds the wheels'; 0 without a reading
-  double variance = 0.0;  ///< rad^2, of the gyro's turn; infinite without a reading
-  double along = 0.0;     ///< m of travel that a radian of excess adds
-  double turn = 0.0;      ///< share of the excess that is taken as turn, from 0 to 1
-  double sideways = 0.0;  ///< m to the left, the wheels' own
-  double aside = 0.0;     ///< m to the left that a radian of excess adds
-};
-
-/// A wheel, or the steering, of a drive that is not simply a left and a right wheel.
-struct WheelColumn {
-  std::string name;             ///< its column of drive.csv
-  bool steers = false;          ///< an angle, not a travel
-  std::vector<double> reading;  ///< m, signed travel; rad where it steers
-  /// d(forward [m], sideways [m, to the left], turn [rad])/d(reading), per row.
-  std::vector<std::array<double, 3>> by_reading;
-};
-
-struct Drive {
+/// The columns of a drive beside its wheels'.
+struct DriveColumns {
   std::vector<double> t;        ///< s, strictly increasing; end of the row's interval
-  std::vector<double> left;     ///< m, signed travel of the left wheel over the interval
-  std::vector<double> right;    ///< m
   std::vector<double> heading;  ///< rad, compass reading at t, NaN = none; empty = no compass
   std::vector<Covariate> covariates;
   /// rad/s, gyro, mean over the interval, NaN = none; empty = no gyro.
-  std::vector<double> yaw_rate = {};
-  /// Left empty by who makes a drive. Where the gyro was taken in, one per row, and `left` and
-  /// `right` are what wheels and gyro say together.
-  std::vector<GyroShare> gyro = {};
-  /// m to the left that the body moves in the row; empty = 0. With two wheels, always.
-  std::vector<double> sideways = {};
-  /// Empty of two wheels. Else the robot's own, and `left` and `right` are the travels that two
-  /// wheels at `wheelbase` would show.
-  std::vector<WheelColumn> wheels = {};
-  /// Left empty by who makes a drive. Where steering effects were taken in (effects/steering.hpp):
-  /// m ahead and rad that they add to the row. Shapes see the drive without.
-  std::vector<std::array<double, 2>> steered = {};
+  std::vector<double> yaw_rate;
 
   [[nodiscard]] std::size_t rows() const { return t.size(); }
   [[nodiscard]] bool has_compass() const { return !heading.empty(); }
   [[nodiscard]] bool has_gyro() const { return !yaw_rate.empty(); }
-  /// The wheels' own travels, m.
-  [[nodiscard]] double wheel_left(std::size_t row) const {
-    return gyro.empty() ? left[row] : gyro[row].left;
-  }
-  [[nodiscard]] double wheel_right(std::size_t row) const {
-    return gyro.empty() ? right[row] : gyro[row].right;
-  }
-  /// m to the left.
-  [[nodiscard]] double slip(std::size_t row) const {
-    return sideways.empty() ? 0.0 : sideways[row];
-  }
-  /// m, how far the body moves in the row, forwards, backwards or to the side.
-  [[nodiscard]] double way(std::size_t row) const {
-    const double ahead = std::abs(0.5 * (left[row] + right[row]));
-    return sideways.empty() ? ahead : std::hypot(ahead, sideways[row]);
-  }
-  /// The wheels' own, m to the left.
-  [[nodiscard]] double wheel_slip(std::size_t row) const {
-    return gyro.empty() ? slip(row) : gyro[row].sideways;
-  }
-  /// Whether no wheel moves in the row.
-  [[nodiscard]] bool rests(std::size_t row) const {
-    return wheel_left(row) == 0.0 && wheel_right(row) == 0.0 && wheel_slip(row) == 0.0;
-  }
   /// Start of the first interval: it is as long as the second.
   [[nodiscard]] double start() const { return rows() > 1 ? t[0] - (t[1] - t[0]) : t[0]; }
   /// How long a row lasts, s.
   [[nodiscard]] double duration(std::size_t row) const {
     return t[row] - (row == 0 ? start() : t[row - 1]);
   }
+};
+
+/// As read. Columns of other wheels than a left and a right one are covariates; how they move a
+/// body is a robot's affair (MotionRows, robot.hpp).
+struct Drive : DriveColumns {
+  std::vector<double> left;   ///< m, signed travel of the left wheel over the interval
+  std::vector<double> right;  ///< m
 };
 
 struct Sighting {
@@ -177,18 +125,22 @@ struct TruthRow {
 /// Shortest leg: two stops that are nearer to each other, m of driven path, end none.
 inline constexpr double kDefaultMinDrive = 0.25;
 
-/// What reads a recording of a caller's own making (build_map, fit_model, calibrate_wheels and what
-/// calls them) throws std::invalid_argument where its drive has fewer than two rows or columns that
-/// differ in length, times leave their order, sightings the drive, or a number is not finite that
-/// must be. Truth and fixes may begin before the drive and end after it.
-struct Recording {
-  std::string name;  ///< where it came from, for messages
-  Drive drive;
+/// What a robot saw, and what was measured of it, while it drove.
+struct Observations {
+  std::string name;                 ///< of the recording: where it came from, for messages
   std::vector<Sighting> sightings;  ///< in order of time
   std::vector<SurveyPoint> survey;
   std::vector<TruthRow> truth;  ///< in order of time
-  std::vector<Fix> fixes = {};  ///< in order of time
-  std::vector<Loop> loops = {};
+  std::vector<Fix> fixes;       ///< in order of time
+  std::vector<Loop> loops;
+};
+
+/// As read. What takes a recording of a caller's own making (build_map, fit_model, calibrate_wheels
+/// and what calls them) throws std::invalid_argument where its drive has fewer than two rows or
+/// columns that differ in length, times leave their order, sightings the drive, or a number is not
+/// finite that must be. Truth and fixes may begin before the drive and end after it.
+struct Recording : Observations {
+  Drive drive;
 };
 
 /// What shapes speak of: a column of numbers, one per row, per variable.

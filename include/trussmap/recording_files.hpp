@@ -293,6 +293,7 @@ struct PhilRecording {
 /// 16 hexadecimal digits that two recordings share only if their wheels, compass, gyro, sightings,
 /// fixes and loops are the same, to the last bit: whatever the folders are called.
 [[nodiscard]] std::string fingerprint(const Recording& recording);
+[[nodiscard]] std::string fingerprint(const DrivenRecording& recording);
 
 // ----------------------------------------
 // Poses over time as text, for other programs. Numbers read back to the same bits.

@@ -6,6 +6,9 @@
 
 #include "trussmap/recording.hpp"
 
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -70,10 +73,76 @@ struct Robot {
 /// forward and turn, or where they mix one of them with s.
 [[nodiscard]] Eigen::MatrixXd wheel_matrix(const std::vector<WheelPlace>& places);
 
-/// The recording with its robot's wheels taken in: `left`, `right`, `sideways` and `wheels` of its
-/// drive from the columns that the robot names, which stay covariates. Unchanged of two wheels
-/// named left and right. Throws InputError where a column is not there, a reading is impossible, or
-/// where the drive has no wheels at all.
-[[nodiscard]] Recording with_wheels(Recording recording, const Robot& robot);
+/// How the gyro's reading of a row was taken into its motion (odometry/wheels_and_gyro.hpp).
+struct GyroShare {
+  double left = 0.0;      ///< m, the wheels' own travels
+  double right = 0.0;     ///< m
+  double excess = 0.0;    ///< rad by which the gyro's turn exceeds the wheels'; 0 without a reading
+  double variance = 0.0;  ///< rad^2, of the gyro's turn; infinite without a reading
+  double along = 0.0;     ///< m of travel that a radian of excess adds
+  double turn = 0.0;      ///< share of the excess that is taken as turn, from 0 to 1
+  double sideways = 0.0;  ///< m to the left, the wheels' own
+  double aside = 0.0;     ///< m to the left that a radian of excess adds
+};
+
+/// A wheel, or the steering, of a drive that is not simply a left and a right wheel.
+struct WheelColumn {
+  std::string name;             ///< its column of drive.csv
+  bool steers = false;          ///< an angle, not a travel
+  std::vector<double> reading;  ///< m, signed travel; rad where it steers
+  /// d(forward [m], sideways [m, to the left], turn [rad])/d(reading), per row.
+  std::vector<std::array<double, 3>> by_reading;
+};
+
+/// A drive as motion of its robot's body, row by row: by the wheels as with_wheels makes it; then
+/// steering effects and the gyro are taken in, once each. Forward and turn are held as what two
+/// wheels at the robot's wheelbase show of them (drive/body_motion.hpp).
+struct MotionRows : DriveColumns {
+  std::vector<double> left;         ///< m
+  std::vector<double> right;        ///< m
+  std::vector<double> sideways;     ///< m that the body moves to the left; empty = 0
+  std::vector<WheelColumn> wheels;  ///< the robot's own; empty of two wheels
+  std::vector<GyroShare> gyro;      ///< once it is taken in
+  /// m ahead and rad that steering effects (effects/steering.hpp) have added; shapes see the drive
+  /// without. Empty where none are taken in.
+  std::vector<std::array<double, 2>> steered;
+
+  /// The wheels' own travels, m.
+  [[nodiscard]] double wheel_left(std::size_t row) const {
+    return gyro.empty() ? left[row] : gyro[row].left;
+  }
+  [[nodiscard]] double wheel_right(std::size_t row) const {
+    return gyro.empty() ? right[row] : gyro[row].right;
+  }
+  /// m to the left.
+  [[nodiscard]] double slip(std::size_t row) const {
+    return sideways.empty() ? 0.0 : sideways[row];
+  }
+  /// m, how far the body moves in the row, forwards, backwards or to the side.
+  [[nodiscard]] double way(std::size_t row) const {
+    const double ahead = std::abs(0.5 * (left[row] + right[row]));
+    return sideways.empty() ? ahead : std::hypot(ahead, sideways[row]);
+  }
+  /// The wheels' own, m to the left.
+  [[nodiscard]] double wheel_slip(std::size_t row) const {
+    return gyro.empty() ? slip(row) : gyro[row].sideways;
+  }
+  /// Whether no wheel moves in the row.
+  [[nodiscard]] bool rests(std::size_t row) const {
+    return wheel_left(row) == 0.0 && wheel_right(row) == 0.0 && wheel_slip(row) == 0.0;
+  }
+};
+
+/// A recording of a robot: what everything takes that reckons with motion.
+struct DrivenRecording : Observations {
+  MotionRows drive;
+};
+
+/// The recording as motion of this robot, by the columns that the robot names (else left and
+/// right). Columns stay covariates. Throws InputError where a column is not there, a reading is
+/// impossible, or where the drive has no wheels at all.
+[[nodiscard]] DrivenRecording with_wheels(Recording recording, const Robot& robot);
+[[nodiscard]] std::vector<DrivenRecording> with_wheels(std::vector<Recording> recordings,
+                                                       const Robot& robot);
 
 }  // namespace trussmap

@@ -103,11 +103,11 @@ enum class TryingStage { fitting, searching, comparing };
 class TriedModel {
  public:
   /// The model's effects are fitted whether or not they have coefficients. Throws like fit_model.
-  TriedModel(std::shared_ptr<const std::vector<Recording>> recordings, const Model& model,
+  TriedModel(std::shared_ptr<const std::vector<DrivenRecording>> recordings, const Model& model,
              const DiagnoseOptions& options = {},
              const std::function<void(TryingStage)>& progress = {});
 
-  [[nodiscard]] const std::vector<Recording>& recordings() const;
+  [[nodiscard]] const std::vector<DrivenRecording>& recordings() const;
   [[nodiscard]] const DiagnoseOptions& options() const;
   /// By the noise that it is judged by: estimated, where the options say so.
   [[nodiscard]] const ModelFit& fit() const;
@@ -193,11 +193,11 @@ struct WorkbenchWatch {
 class Workbench {
  public:
   /// Begins with the model as given.
-  Workbench(std::vector<Recording> recordings, const Model& model,
+  Workbench(std::vector<DrivenRecording> recordings, const Model& model,
             const DiagnoseOptions& options = {}, const WorkbenchWatch& watch = {});
   /// Goes on where a log ends. Throws std::invalid_argument on a log without steps or with steps
   /// that come from none.
-  Workbench(std::vector<Recording> recordings, WorkbenchLog log,
+  Workbench(std::vector<DrivenRecording> recordings, WorkbenchLog log,
             const DiagnoseOptions& options = {}, const WorkbenchWatch& watch = {});
 
   [[nodiscard]] const TriedModel& now() const { return *now_; }
@@ -223,7 +223,7 @@ class Workbench {
   [[nodiscard]] WorkbenchStep from_here(WorkbenchStep::Kind kind) const;
   void take(WorkbenchStep step, const WorkbenchWatch& watch);
 
-  std::shared_ptr<const std::vector<Recording>> recordings_;
+  std::shared_ptr<const std::vector<DrivenRecording>> recordings_;
   DiagnoseOptions options_;
   WorkbenchLog log_;
   std::optional<TriedModel> now_;

@@ -46,7 +46,6 @@ MapResult run_build_map(const py::object& recordings, const py::object& model,
   unlocked([&] {
     told.next();
     Read input = read(given);
-    for (Recording& one : input.recordings) one = with_wheels(std::move(one), input.model.robot);
     for (const CheckFinding& one :
          check_recordings(input.recordings, &input.model, input.model_name)) {
       result.mistakes.push_back(in_words(one));

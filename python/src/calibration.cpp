@@ -18,7 +18,7 @@ struct CalibrationResult {
   WheelCalibration found;
   CalibrationValidation held;
   std::optional<TestedDrives> test;
-  std::shared_ptr<const std::vector<Recording>> recordings;
+  std::shared_ptr<const std::vector<DrivenRecording>> recordings;
   Robot robot;
   std::string subject;
   std::vector<std::string> mistakes;
@@ -57,25 +57,25 @@ CalibrationResult run_calibrate(const py::object& recordings, const py::object& 
   unlocked([&] {
     told.next();
     Read input = read(given);
-    for (Recording& one : input.recordings) one = with_wheels(std::move(one), input.model.robot);
     for (const CheckFinding& one :
          check_recordings(input.recordings, &input.model, input.model_name)) {
       result.mistakes.push_back(in_words(one));
     }
     result.robot = input.model.robot;
-    result.recordings = std::make_shared<const std::vector<Recording>>(std::move(input.recordings));
-    const std::vector<Recording>& used = *result.recordings;
+    result.recordings = std::make_shared<const std::vector<DrivenRecording>>(
+        with_wheels(std::move(input.recordings), input.model.robot));
+    const std::vector<DrivenRecording>& used = *result.recordings;
     told.next();
     result.found = calibrate_wheels(used, input.model, how);
     told.next();
     result.held = validate_calibration(used, input.model, how);
     if (!kept) return;
-    Read drives = read(*kept);
-    for (Recording& one : drives.recordings) one = with_wheels(std::move(one), input.model.robot);
+    const std::vector<DrivenRecording> drives =
+        with_wheels(read(*kept).recordings, input.model.robot);
     TestedDrives tested;
-    for (const Recording& one : drives.recordings) tested.names.push_back(one.name);
-    tested.nominal = drive_errors(drives.recordings, input.model);
-    tested.calibrated = drive_errors(drives.recordings, result.found.model, result.found.truth);
+    for (const DrivenRecording& one : drives) tested.names.push_back(one.name);
+    tested.nominal = drive_errors(drives, input.model);
+    tested.calibrated = drive_errors(drives, result.found.model, result.found.truth);
     result.test = std::move(tested);
   });
   warn(result.mistakes);

@@ -21,11 +21,7 @@ CheckResult run_check(const py::object& recordings, const py::object& model) {
   const Given given = python::given(recordings, model, true);
   const bool has_model = !model.is_none();
   return unlocked([&] {
-    Read input = read(given);
-    // Named columns are the check's own affair: it knows angles that lead nowhere.
-    if (!has_model || input.model.robot.columns.empty()) {
-      for (Recording& one : input.recordings) one = with_wheels(std::move(one), Robot());
-    }
+    const Read input = read(given);
     return CheckResult{check_recordings(input.recordings, has_model ? &input.model : nullptr,
                                         has_model ? input.model_name : "")};
   });

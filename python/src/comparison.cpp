@@ -43,7 +43,7 @@ ComparisonResult run_compare(const py::object& recordings, const py::object& mod
   });
   warn(result.input.mistakes);
   unlocked([&] {
-    const std::vector<Recording>& used = *result.input.recordings;
+    const std::vector<DrivenRecording>& used = *result.input.recordings;
     CompareOptions how{use.fit, use.legs, use.level};
     how.fit.fit_effects = false;
     told.next();

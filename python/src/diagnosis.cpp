@@ -38,7 +38,7 @@ DiagnosisResult run_diagnose(const py::object& recordings, const py::object& mod
   });
   warn(result.input.mistakes);
   unlocked([&] {
-    const std::vector<Recording>& used = *result.input.recordings;
+    const std::vector<DrivenRecording>& used = *result.input.recordings;
     told.next();
     result.fit = fit_model(used, result.input.model, result.how.fit);
     told.next();

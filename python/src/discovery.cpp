@@ -50,7 +50,7 @@ DiscoveryResult run_discover(const py::object& recordings, const py::object& mod
   });
   warn(result.input.mistakes);
   unlocked([&] {
-    const std::vector<Recording>& used = *result.input.recordings;
+    const std::vector<DrivenRecording>& used = *result.input.recordings;
     DiscoverOptions how;
     how.diagnosis = result.how;
     how.most_effects = most;

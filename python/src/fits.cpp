@@ -51,7 +51,7 @@ FitResult run_fit(const py::object& recordings, const py::object& model, bool no
     throw py::value_error("the model has no effect to fit, expected one or more");
   }
   unlocked([&] {
-    const std::vector<Recording>& used = *result.input.recordings;
+    const std::vector<DrivenRecording>& used = *result.input.recordings;
     Model fitted = result.input.model;
     FitOptions how = result.use.fit;
     if (noise) {

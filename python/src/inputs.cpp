@@ -148,15 +148,15 @@ std::vector<std::vector<TimeSpan>> excluded_of(py::handle exclude, std::size_t r
 Prepared prepared(const Given& given, const UseOptions& use) {
   Read input = read(given);
   check_excluded(input.recordings, use.fit);
-  for (Recording& one : input.recordings) one = with_wheels(std::move(one), input.model.robot);
   Prepared result;
   for (const CheckFinding& one :
        check_recordings(input.recordings, &input.model, input.model_name)) {
     result.mistakes.push_back(in_words(one));
   }
-  PreparedRecordings ready =
-      prepare_recordings(std::move(input.recordings), input.model, use.fit, use.every);
-  result.recordings = std::make_shared<const std::vector<Recording>>(std::move(ready.recordings));
+  PreparedRecordings ready = prepare_recordings(
+      with_wheels(std::move(input.recordings), input.model.robot), input.model, use.fit, use.every);
+  result.recordings =
+      std::make_shared<const std::vector<DrivenRecording>>(std::move(ready.recordings));
   result.notes = std::move(ready.notes);
   result.model = std::move(input.model);
   result.subject = subject_of(given);

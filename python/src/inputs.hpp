@@ -46,7 +46,7 @@ struct Read {
 
 /// Read, checked and prepared for a fit.
 struct Prepared {
-  std::shared_ptr<const std::vector<Recording>> recordings;
+  std::shared_ptr<const std::vector<DrivenRecording>> recordings;
   Model model;
   std::vector<std::string> notes;
   std::vector<std::string> mistakes;  ///< what check_recordings finds, in words

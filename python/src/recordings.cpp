@@ -104,7 +104,7 @@ py::dict truth_columns(const py::object& self) {
 }
 
 /// None where there is no such column.
-template <std::vector<double> Drive::*kColumn>
+template <auto kColumn>
 py::object drive_column(const py::object& self) {
   const std::vector<double>& column = held(self).drive.*kColumn;
   return column.empty() ? py::object(py::none()) : view(column, self);
@@ -163,13 +163,14 @@ void add_recordings(py::module_& module) {
             unlocked([&] { write_recording(folder, self); });
           },
           py::arg("folder"), doc("write_recording"))
-      .def_readonly("name", &Recording::name, doc("Recording.name"))
+      .def_readonly("name", &Recording::name, doc("Observations.name"))
       .def("__len__", [](const Recording& self) { return self.drive.rows(); })
-      .def_property_readonly("t", drive_column<&Drive::t>, doc("Drive.t"))
+      .def_property_readonly("t", drive_column<&Drive::t>, doc("DriveColumns.t"))
       .def_property_readonly("left", drive_column<&Drive::left>, doc("Drive.left"))
       .def_property_readonly("right", drive_column<&Drive::right>, doc("Drive.right"))
-      .def_property_readonly("heading", drive_column<&Drive::heading>, doc("Drive.heading"))
-      .def_property_readonly("yaw_rate", drive_column<&Drive::yaw_rate>, doc("Drive.yaw_rate"))
+      .def_property_readonly("heading", drive_column<&Drive::heading>, doc("DriveColumns.heading"))
+      .def_property_readonly("yaw_rate", drive_column<&Drive::yaw_rate>,
+                             doc("DriveColumns.yaw_rate"))
       .def_property_readonly("drive", drive_columns,
                              "Columns by name, as pandas.DataFrame takes them.")
       .def_property_readonly("sightings", sighting_columns, "Columns by name; NaN: absent.")

@@ -6,7 +6,7 @@
 #include "build_map/leg_by_leg.hpp"
 #include "build_map/map_doubts.hpp"
 #include "build_map/map_fit.hpp"
-#include "recording/well_formed.hpp"
+#include "drive/well_formed.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/gate.hpp"
@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kFewestSurveyed = 3;
 
-void check(const std::vector<Recording>& recordings, const BuildMapOptions& options) {
+void check(const std::vector<DrivenRecording>& recordings, const BuildMapOptions& options) {
   if (recordings.empty()) throw std::invalid_argument("a map needs a recording");
   require_well_formed(recordings);
   if (!(options.gate.value_or(kAdjustmentGate) > 0.0) || !(options.min_drive >= 0.0)) {
@@ -31,8 +31,8 @@ void check(const std::vector<Recording>& recordings, const BuildMapOptions& opti
   }
 }
 
-void require_sightings(const std::vector<Recording>& recordings) {
-  for (const Recording& one : recordings) {
+void require_sightings(const std::vector<DrivenRecording>& recordings) {
+  for (const DrivenRecording& one : recordings) {
     if (!one.sightings.empty()) continue;
     throw InputError(one.name, 0,
                      "no landmark was sighted, expected sightings to build a map from; a path is "
@@ -68,9 +68,9 @@ std::set<std::string> landmarks_stood_on(const std::vector<ClearedRecording>& cl
   return names;
 }
 
-std::vector<SurveyPoint> survey_of(const std::vector<Recording>& recordings) {
+std::vector<SurveyPoint> survey_of(const std::vector<DrivenRecording>& recordings) {
   std::map<std::string, SurveyPoint> survey;
-  for (const Recording& recording : recordings) {
+  for (const DrivenRecording& recording : recordings) {
     for (const SurveyPoint& point : recording.survey) survey.try_emplace(point.landmark, point);
   }
   std::vector<SurveyPoint> result;
@@ -80,7 +80,7 @@ std::vector<SurveyPoint> survey_of(const std::vector<Recording>& recordings) {
 }
 
 std::optional<MapOnSurvey> laid_on_survey(const BuiltMap& built,
-                                          const std::vector<Recording>& recordings) {
+                                          const std::vector<DrivenRecording>& recordings) {
   MapOnSurvey result;
   result.points = survey_of(recordings);
   result.comparison = compare_with_survey(positions_of(built.map), result.points);
@@ -183,7 +183,7 @@ void take_fit(BuiltMap& built, const MapFitState& best) {
   built.freed = best.freed;
 }
 
-BuiltMap build_paths(const std::vector<Recording>& recordings, const Model& model,
+BuiltMap build_paths(const std::vector<DrivenRecording>& recordings, const Model& model,
                      const BuildMapOptions& options) {
   if (options.method != Method::adjustment) {
     throw InputError(recordings.front().name, 0,
@@ -200,7 +200,7 @@ BuiltMap build_paths(const std::vector<Recording>& recordings, const Model& mode
 
 /// What the fit says of the map, and what speaks against it.
 BuiltMap judged(BuiltMap built, const MapFitState& best, bool guided,
-                const std::vector<Recording>& recordings, const Model& model,
+                const std::vector<DrivenRecording>& recordings, const Model& model,
                 const std::vector<SightedDrive>& believed) {
   take_fit(built, best);
   const bool on_its_way = built.method != Method::adjustment && !guided;
@@ -219,7 +219,7 @@ BuiltMap judged(BuiltMap built, const MapFitState& best, bool guided,
 
 }  // namespace
 
-BuiltMap build_map(const std::vector<Recording>& recordings, const Model& model,
+BuiltMap build_map(const std::vector<DrivenRecording>& recordings, const Model& model,
                    const BuildMapOptions& options) {
   check(recordings, options);
   if (are_paths_alone(recordings)) return build_paths(recordings, model, options);
@@ -235,9 +235,9 @@ BuiltMap build_map(const std::vector<Recording>& recordings, const Model& model,
                 sessions_of(believed, model, guides));
 }
 
-BuiltMap extend_map(MapBuilder& builder, const Recording& recording, const Model& model,
+BuiltMap extend_map(MapBuilder& builder, const DrivenRecording& recording, const Model& model,
                     MapAxes axes, const BuildMapOptions& options) {
-  const std::vector<Recording> recordings{recording};
+  const std::vector<DrivenRecording> recordings{recording};
   check(recordings, options);
   require_sightings(recordings);
   const MapFitState best = fit_map(recordings, model, options.gate);

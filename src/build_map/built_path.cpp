@@ -79,10 +79,10 @@ void add_standard_errors(const FitState& fit, std::vector<BuiltPath>& paths) {
   for (std::size_t s = 0; s < paths.size(); ++s) paths[s].median_sd = median(std::move(sds[s]));
 }
 
-std::optional<PathOnTruth> laid_on_truth(const Recording& recording, const SessionPath& adjusted,
-                                         const SessionPath& reckoned) {
+std::optional<PathOnTruth> laid_on_truth(const DrivenRecording& recording,
+                                         const SessionPath& adjusted, const SessionPath& reckoned) {
   constexpr std::size_t kFewest = 3;
-  const Drive& drive = recording.drive;
+  const MotionRows& drive = recording.drive;
   std::vector<Vector2> truth, path, dead;
   for (const TruthRow& row : recording.truth) {
     if (row.t < drive.start() || row.t > drive.t.back()) continue;
@@ -97,7 +97,8 @@ std::optional<PathOnTruth> laid_on_truth(const Recording& recording, const Sessi
 
 }  // namespace
 
-std::vector<BuiltPath> paths_of(const MapFitState& best, const std::vector<Recording>& recordings,
+std::vector<BuiltPath> paths_of(const MapFitState& best,
+                                const std::vector<DrivenRecording>& recordings,
                                 const std::vector<ClearedRecording>& believed, const Model& model) {
   std::vector<BuiltPath> paths(recordings.size());
   for (std::size_t s = 0; s < paths.size(); ++s) {

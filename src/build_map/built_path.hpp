@@ -19,7 +19,7 @@ namespace trussmap {
 /// One per recording; `believed` are the recordings freed from the effects that the user's model
 /// states. The fit has laid its paths.
 [[nodiscard]] std::vector<BuiltPath> paths_of(const MapFitState& best,
-                                              const std::vector<Recording>& recordings,
+                                              const std::vector<DrivenRecording>& recordings,
                                               const std::vector<ClearedRecording>& believed,
                                               const Model& model);
 

@@ -20,12 +20,12 @@
 namespace trussmap {
 namespace {
 
-void doubt_units(const std::vector<Recording>& recordings, const Model& model,
+void doubt_units(const std::vector<DrivenRecording>& recordings, const Model& model,
                  std::vector<std::string>& warnings) {
   constexpr double kFast = 30.0;  // m/s
   constexpr double kWide = 10.0;  // m
-  for (const Recording& recording : recordings) {
-    const Drive& drive = recording.drive;
+  for (const DrivenRecording& recording : recordings) {
+    const MotionRows& drive = recording.drive;
     double path = 0.0;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       path += std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
@@ -352,7 +352,7 @@ MapQuality quality_of(const BuiltMap& built, const MapFitState& best, const Reck
   return result;
 }
 
-void doubt(BuiltMap& built, const MapFitState& best, const std::vector<Recording>& recordings,
+void doubt(BuiltMap& built, const MapFitState& best, const std::vector<DrivenRecording>& recordings,
            const Model& model) {
   doubt_units(recordings, model, built.warnings);
   doubt_fit(built, best);

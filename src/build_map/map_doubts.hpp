@@ -25,7 +25,7 @@ namespace trussmap {
 [[nodiscard]] std::string listed(const std::vector<std::string>& names);
 
 /// Fills in the warnings and notes; the map has its quality.
-void doubt(BuiltMap& built, const MapFitState& best, const std::vector<Recording>& recordings,
+void doubt(BuiltMap& built, const MapFitState& best, const std::vector<DrivenRecording>& recordings,
            const Model& model);
 
 }  // namespace trussmap

@@ -63,13 +63,13 @@ double misfit_of(const FitState& fit, const Measurement& one) {
 
 }  // namespace
 
-bool are_paths_alone(const std::vector<Recording>& recordings) {
-  return std::all_of(recordings.begin(), recordings.end(), [](const Recording& one) {
+bool are_paths_alone(const std::vector<DrivenRecording>& recordings) {
+  return std::all_of(recordings.begin(), recordings.end(), [](const DrivenRecording& one) {
     return one.sightings.empty() && !(one.fixes.empty() && one.loops.empty());
   });
 }
 
-MapFitState fit_map(const std::vector<Recording>& recordings, const Model& model,
+MapFitState fit_map(const std::vector<DrivenRecording>& recordings, const Model& model,
                     const std::optional<double>& gate) {
   FitterOptions how = options_for(gate);
   how.free_common_errors = true;

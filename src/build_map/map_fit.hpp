@@ -27,12 +27,12 @@ struct MapFitState {
 };
 
 /// No sightings, but fixes or loops in each: there are paths to build, and no map.
-[[nodiscard]] bool are_paths_alone(const std::vector<Recording>& recordings);
+[[nodiscard]] bool are_paths_alone(const std::vector<DrivenRecording>& recordings);
 
 /// Survey and truth have no part in it; of paths alone the paths are laid. Throws as build_map
 /// does.
-[[nodiscard]] MapFitState fit_map(const std::vector<Recording>& recordings, const Model& model,
-                                  const std::optional<double>& gate);
+[[nodiscard]] MapFitState fit_map(const std::vector<DrivenRecording>& recordings,
+                                  const Model& model, const std::optional<double>& gate);
 
 /// Sightings that were left out, with how far each points from its landmark.
 [[nodiscard]] std::vector<RejectedSighting> left_out_of(const FitState& fit);

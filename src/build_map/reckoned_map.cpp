@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "build_map/reckoned_map.hpp"
 
-#include "recording/legs.hpp"
+#include "drive/legs.hpp"
 
 #include <map>
 #include <string>

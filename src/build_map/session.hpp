@@ -5,7 +5,7 @@
 #pragma once
 
 #include "build_map/leg_by_leg.hpp"
-#include "recording/legs.hpp"
+#include "drive/legs.hpp"
 #include "trussmap/map_builder.hpp"
 
 #include <limits>
@@ -50,7 +50,7 @@ class Session {
 
   const SightedDrive& drive_;
   bool own_axes_;  // legs are handed on in the robot's own axes: no compass, no guide
-  const Recording& recording_;
+  const DrivenRecording& recording_;
   const LegByLegOptions& options_;
   MapBuilder& builder_;
   BuiltMap& result_;

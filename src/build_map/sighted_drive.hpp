@@ -25,8 +25,8 @@ class SightedDrive {
   SightedDrive(const ClearedRecording& cleared, const Model& model, const SessionGuide& guide)
       : cleared_(cleared), model_(model), guide_(guide) {}
 
-  [[nodiscard]] const Recording& recording() const { return cleared_.recording; }
-  [[nodiscard]] const Drive& drive() const { return recording().drive; }
+  [[nodiscard]] const DrivenRecording& recording() const { return cleared_.recording; }
+  [[nodiscard]] const MotionRows& drive() const { return recording().drive; }
 
   /// Heading at time `t` from the compass, 0 without one.
   [[nodiscard]] InitialHeading heading_at(double t) const {

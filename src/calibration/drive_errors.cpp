@@ -26,7 +26,7 @@ double rms_heading_per_metre(const std::vector<DriveError>& errors) {
 namespace {
 
 /// m, of a row's wheels, each counted forwards.
-double mean_travel(const Drive& drive, std::size_t row) {
+double mean_travel(const MotionRows& drive, std::size_t row) {
   if (drive.wheels.empty()) return 0.5 * (std::abs(drive.left[row]) + std::abs(drive.right[row]));
   double sum = 0.0;
   int count = 0;
@@ -40,11 +40,12 @@ double mean_travel(const Drive& drive, std::size_t row) {
 
 }  // namespace
 
-std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings, const Model& model) {
+std::vector<DriveError> drive_errors(const std::vector<DrivenRecording>& recordings,
+                                     const Model& model) {
   std::vector<DriveError> result;
-  const std::vector<Recording> corrected = without_effects(recordings, model);
+  const std::vector<DrivenRecording> corrected = without_effects(recordings, model);
   for (std::size_t k = 0; k < recordings.size(); ++k) {
-    const Drive& drive = corrected[k].drive;
+    const MotionRows& drive = corrected[k].drive;
     std::vector<TruthRow> truth = recordings[k].truth;
     std::erase_if(truth, [&](const TruthRow& row) {
       return row.t < drive.start() || row.t > drive.t.back();
@@ -68,8 +69,8 @@ std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings, c
   return result;
 }
 
-std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings, const Model& model,
-                                     const TruthAlignment& truth) {
+std::vector<DriveError> drive_errors(const std::vector<DrivenRecording>& recordings,
+                                     const Model& model, const TruthAlignment& truth) {
   TruthAlignment mounting = truth;
   mounting.clocks.clear();
   return drive_errors(aligned(recordings, mounting, model.robot), model);

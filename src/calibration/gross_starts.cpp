@@ -47,7 +47,7 @@ struct TimedMark {
   Mark mark;
 };
 
-std::vector<TimedMark> marks_of(const Recording& recording) {
+std::vector<TimedMark> marks_of(const DrivenRecording& recording) {
   std::map<std::string, Vector2> survey;
   for (const SurveyPoint& one : recording.survey) survey[one.landmark] = {one.x, one.y};
   std::vector<TimedMark> marks;
@@ -87,7 +87,7 @@ std::vector<TimedMark> thinned(const std::vector<TimedMark>& marks) {
   return kept;
 }
 
-void add_steps(const Drive& drive, double from, double to, const Robot& robot,
+void add_steps(const MotionRows& drive, double from, double to, const Robot& robot,
                std::vector<BodyMotion>& steps) {
   constexpr double kStraight = 0.05;  // rad
   BodyMotion sum;
@@ -138,10 +138,10 @@ void find_returns(Course& course) {
   if (course.returns.size() > kMost) course.returns.resize(kMost);
 }
 
-Course course_of(const Recording& recording, const Robot& robot) {
+Course course_of(const DrivenRecording& recording, const Robot& robot) {
   constexpr std::size_t kMostSteps = 1500;
   Course course;
-  const Drive& drive = recording.drive;
+  const MotionRows& drive = recording.drive;
   double from = drive.start();
   for (TimedMark& one : thinned(marks_of(recording))) {
     if (one.t < drive.start() || one.t > drive.t.back()) continue;
@@ -179,13 +179,13 @@ Vector2 seen_from(const Pose& pose, const Mark& mark) {
 
 class Disagreement {
  public:
-  Disagreement(const std::vector<Recording>& recordings, const Robot& robot)
+  Disagreement(const std::vector<DrivenRecording>& recordings, const Robot& robot)
       : wheelbase_(robot.wheelbase) {
     constexpr std::size_t kFewestChords = 6;
     constexpr std::size_t kFewestReturns = 3;
     std::size_t chords = 0;
     std::size_t returns = 0;
-    for (const Recording& one : recordings) {
+    for (const DrivenRecording& one : recordings) {
       courses_.push_back(course_of(one, robot));
       chords += courses_.back().chords.size();
       returns += courses_.back().returns.size();
@@ -298,7 +298,7 @@ Rated descended(const Disagreement& disagreement, Rated at, bool two_wheels) {
 }
 
 /// The best of their neighbourhoods.
-std::vector<GrossStart> starts_by_places(const std::vector<Recording>& recordings,
+std::vector<GrossStart> starts_by_places(const std::vector<DrivenRecording>& recordings,
                                          const Robot& robot) {
   constexpr double kNear = 0.15;  // of a logarithm
   constexpr double kMuchBetter = 0.6;
@@ -328,11 +328,11 @@ std::vector<GrossStart> starts_by_places(const std::vector<Recording>& recording
 
 }  // namespace
 
-std::vector<GrossStart> gross_starts(const std::vector<Recording>& all, const Robot& robot,
+std::vector<GrossStart> gross_starts(const std::vector<DrivenRecording>& all, const Robot& robot,
                                      const ProblemOptions& options) {
   if (all.empty()) return {};
-  std::vector<Recording> recordings = all;
-  for (Recording& one : recordings) {
+  std::vector<DrivenRecording> recordings = all;
+  for (DrivenRecording& one : recordings) {
     if (!options.survey) one.survey.clear();
     if (!options.truth) one.truth.clear();
     if (!options.fixes) one.fixes.clear();

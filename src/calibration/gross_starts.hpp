@@ -32,7 +32,7 @@ struct GrossStart {
 
 /// The most promising first, a handful at most; none where the stated constants are as good. The
 /// drives' wheels are taken in (with_wheels). `options`: what of the recordings is used.
-[[nodiscard]] std::vector<GrossStart> gross_starts(const std::vector<Recording>& recordings,
+[[nodiscard]] std::vector<GrossStart> gross_starts(const std::vector<DrivenRecording>& recordings,
                                                    const Robot& robot,
                                                    const ProblemOptions& options = {});
 

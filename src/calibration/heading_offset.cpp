@@ -3,8 +3,8 @@
 #include "calibration/heading_offset.hpp"
 
 #include "calibration/reckoning.hpp"
+#include "drive/legs.hpp"
 #include "geometry/units.hpp"
-#include "recording/legs.hpp"
 
 #include <cmath>
 #include <complex>
@@ -27,8 +27,8 @@ struct MeanDirections {
   double weight = 0.0;  // m
 };
 
-void add_pairs(MeanDirections& sum, const Recording& recording, const Robot& robot) {
-  const Drive& drive = recording.drive;
+void add_pairs(MeanDirections& sum, const DrivenRecording& recording, const Robot& robot) {
+  const MotionRows& drive = recording.drive;
   const std::vector<double> path = driven_path(drive);
   std::optional<TruthRow> from;
   double start = 0.0;
@@ -54,9 +54,9 @@ void add_pairs(MeanDirections& sum, const Recording& recording, const Robot& rob
 
 }  // namespace
 
-HeadingOffset heading_offset(const std::vector<Recording>& recordings, const Robot& robot) {
+HeadingOffset heading_offset(const std::vector<DrivenRecording>& recordings, const Robot& robot) {
   MeanDirections sum;
-  for (const Recording& recording : recordings) {
+  for (const DrivenRecording& recording : recordings) {
     if (!recording.truth.empty()) add_pairs(sum, recording, robot);
   }
   HeadingOffset result;

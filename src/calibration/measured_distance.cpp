@@ -24,7 +24,7 @@ bool spans(const std::vector<Fix>& fixes, const Noise& noise) {
   });
 }
 
-bool measures(const Recording& one, const ProblemOptions& options, const Noise& noise) {
+bool measures(const DrivenRecording& one, const ProblemOptions& options, const Noise& noise) {
   const auto sees_range = [](const Sighting& sighting) { return !sighting.standing(); };
   return (options.survey && !one.survey.empty()) || (options.truth && !one.truth.empty()) ||
          (options.fixes && spans(one.fixes, noise)) ||
@@ -35,10 +35,10 @@ bool measures(const Recording& one, const ProblemOptions& options, const Noise& 
 
 }  // namespace
 
-bool measures_distance(const std::vector<Recording>& recordings, const ProblemOptions& options,
-                       const Noise& noise) {
+bool measures_distance(const std::vector<DrivenRecording>& recordings,
+                       const ProblemOptions& options, const Noise& noise) {
   return std::any_of(recordings.begin(), recordings.end(),
-                     [&](const Recording& one) { return measures(one, options, noise); });
+                     [&](const DrivenRecording& one) { return measures(one, options, noise); });
 }
 
 }  // namespace trussmap

@@ -14,7 +14,7 @@ namespace trussmap {
 
 /// By truth, a survey, ranges, or loops between poses that are apart by ten times what a loop is
 /// good to: those of another odometer, not those of a place met again.
-[[nodiscard]] bool measures_distance(const std::vector<Recording>& recordings,
+[[nodiscard]] bool measures_distance(const std::vector<DrivenRecording>& recordings,
                                      const ProblemOptions& options, const Noise& noise);
 
 }  // namespace trussmap

@@ -28,7 +28,7 @@ double restricted_loss(const RecordingProblem& problem, const EffectParameters& 
 
 }  // namespace
 
-std::optional<WheelNoiseFit> most_likely_noise(const std::vector<Recording>& corrected,
+std::optional<WheelNoiseFit> most_likely_noise(const std::vector<DrivenRecording>& corrected,
                                                const Model& model, const ProblemOptions& options,
                                                const EffectParameters& parameters,
                                                const RecordingState& start) {

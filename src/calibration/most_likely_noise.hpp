@@ -23,7 +23,7 @@ struct WheelNoiseFit {
 /// starts from the model's noise and goes no further than a factor of 150 either way. None where
 /// the likelihood has no maximum there: other noise hides that of the wheels.
 [[nodiscard]] std::optional<WheelNoiseFit> most_likely_noise(
-    const std::vector<Recording>& corrected, const Model& model, const ProblemOptions& options,
-    const EffectParameters& parameters, const RecordingState& start);
+    const std::vector<DrivenRecording>& corrected, const Model& model,
+    const ProblemOptions& options, const EffectParameters& parameters, const RecordingState& start);
 
 }  // namespace trussmap

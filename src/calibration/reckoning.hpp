@@ -13,7 +13,7 @@
 namespace trussmap {
 
 /// `from` <= `to`, s; times outside of the drive are cut to it.
-[[nodiscard]] inline Pose reckoned(const Drive& drive, Pose pose, double from, double to,
+[[nodiscard]] inline Pose reckoned(const MotionRows& drive, Pose pose, double from, double to,
                                    const Robot& robot) {
   for (const DriveRow& row : rows_between(drive, from, to)) {
     pose = compose(pose, displacement_of(body_motion(travel_of(drive, row), robot,

@@ -17,7 +17,7 @@ constexpr double kAntennaSd = 3.0;  // m: a receiver's, which may sit on a long 
 
 /// Where the robot was `late` seconds before time t, seen from where it is at t; at rest outside
 /// of the drive.
-Pose way_back(const Drive& drive, double t, double late, const Robot& robot) {
+Pose way_back(const MotionRows& drive, double t, double late, const Robot& robot) {
   const auto inside = [&drive](double at) { return std::clamp(at, drive.start(), drive.t.back()); };
   const double from = inside(std::min(t, t - late));
   const double to = inside(std::max(t, t - late));
@@ -28,7 +28,7 @@ Pose way_back(const Drive& drive, double t, double late, const Robot& robot) {
 
 /// What one second of lateness does to a truth row: the way back over the lateness of an earlier
 /// fit, which is exact there; without one, that of a moment about the row.
-ViewPattern per_second(const Drive& drive, double t, double late, const Robot& robot) {
+ViewPattern per_second(const MotionRows& drive, double t, double late, const Robot& robot) {
   constexpr double kMoment = 0.15;     // s: longer than a row's jitter
   constexpr double kTellable = 0.005;  // s
   Pose back;
@@ -66,8 +66,8 @@ int session_of(const std::vector<int>& sessions, std::size_t recording) {
 
 /// Sessions with such rows, and when their drives start.
 template <typename Row>
-std::map<int, TruthClock> clocks_of(const std::vector<Recording>& recordings,
-                                    std::vector<Row> Recording::*rows,
+std::map<int, TruthClock> clocks_of(const std::vector<DrivenRecording>& recordings,
+                                    std::vector<Row> Observations::*rows,
                                     const std::vector<int>& sessions) {
   std::map<int, TruthClock> clocks;
   for (std::size_t k = 0; k < recordings.size(); ++k) {
@@ -83,12 +83,12 @@ using Patterns = std::vector<std::vector<ViewPattern>> EffectPattern::*;
 /// One value for all rows of all recordings.
 template <typename Row>
 EffectPattern everywhere(const char* name, const ViewPattern& unit, double prior_sd,
-                         const std::vector<Recording>& recordings,
-                         std::vector<Row> Recording::*rows, Patterns patterns) {
+                         const std::vector<DrivenRecording>& recordings,
+                         std::vector<Row> Observations::*rows, Patterns patterns) {
   EffectPattern result;
   result.name = name;
   result.prior_sd = prior_sd;
-  for (const Recording& one : recordings) {
+  for (const DrivenRecording& one : recordings) {
     (result.*patterns).emplace_back((one.*rows).size(), unit);
   }
   return result;
@@ -96,9 +96,10 @@ EffectPattern everywhere(const char* name, const ViewPattern& unit, double prior
 
 /// How late one session's rows are, with `late_at` what an earlier fit has found of that.
 template <typename Row, typename LateAt>
-EffectPattern lateness_of(int session, const std::vector<Recording>& recordings,
-                          std::vector<Row> Recording::*rows, Patterns patterns, const Robot& robot,
-                          const std::vector<int>& sessions, const LateAt& late_at) {
+EffectPattern lateness_of(int session, const std::vector<DrivenRecording>& recordings,
+                          std::vector<Row> Observations::*rows, Patterns patterns,
+                          const Robot& robot, const std::vector<int>& sessions,
+                          const LateAt& late_at) {
   EffectPattern result;
   result.prior_sd = kLateSd;
   (result.*patterns).resize(recordings.size());
@@ -113,7 +114,7 @@ EffectPattern lateness_of(int session, const std::vector<Recording>& recordings,
 }
 
 /// The clock that a lateness grows by.
-EffectPattern drift_of(const EffectPattern& late, const std::vector<Recording>& recordings,
+EffectPattern drift_of(const EffectPattern& late, const std::vector<DrivenRecording>& recordings,
                        double start) {
   EffectPattern result = late;
   result.name = "truth's clock";
@@ -130,14 +131,14 @@ constexpr ViewPattern kAhead{.ahead = 1.0};
 constexpr ViewPattern kLeft{.left = 1.0};
 constexpr ViewPattern kTurned{.heading = 1.0};
 
-EffectParameters of_truth(const std::vector<Recording>& recordings, const Robot& robot,
+EffectParameters of_truth(const std::vector<DrivenRecording>& recordings, const Robot& robot,
                           const std::vector<int>& sessions, const TruthAlignment& prior) {
   EffectParameters parameters;
-  const std::map<int, TruthClock> clocks = clocks_of(recordings, &Recording::truth, sessions);
+  const std::map<int, TruthClock> clocks = clocks_of(recordings, &Observations::truth, sessions);
   if (clocks.empty()) return parameters;
   const auto add = [&](const char* name, const ViewPattern& unit, double sd) {
     parameters.push_back(
-        everywhere(name, unit, sd, recordings, &Recording::truth, &EffectPattern::truths));
+        everywhere(name, unit, sd, recordings, &Observations::truth, &EffectPattern::truths));
   };
   add("truth's point, ahead", kAhead, kLeverSd);
   add("truth's point, left", kLeft, kLeverSd);
@@ -145,8 +146,8 @@ EffectParameters of_truth(const std::vector<Recording>& recordings, const Robot&
   for (const auto& [session, start] : clocks) {
     const int number = session;
     EffectPattern late =
-        lateness_of(number, recordings, &Recording::truth, &EffectPattern::truths, robot, sessions,
-                    [&](double t) { return lateness(prior, number, t); });
+        lateness_of(number, recordings, &Observations::truth, &EffectPattern::truths, robot,
+                    sessions, [&](double t) { return lateness(prior, number, t); });
     late.name = "truth late";
     EffectPattern clock = drift_of(late, recordings, start.start);
     parameters.push_back(std::move(late));
@@ -155,21 +156,22 @@ EffectParameters of_truth(const std::vector<Recording>& recordings, const Robot&
   return parameters;
 }
 
-EffectParameters of_fixes(const std::vector<Recording>& recordings, const Robot& robot,
+EffectParameters of_fixes(const std::vector<DrivenRecording>& recordings, const Robot& robot,
                           const std::vector<int>& sessions, const FixAlignment& prior) {
   EffectParameters parameters;
-  const std::map<int, TruthClock> clocks = clocks_of(recordings, &Recording::fixes, sessions);
+  const std::map<int, TruthClock> clocks = clocks_of(recordings, &Observations::fixes, sessions);
   if (clocks.empty()) return parameters;
   for (const auto& [name, unit] :
        {std::pair{"antenna, ahead", kAhead}, std::pair{"antenna, left", kLeft}}) {
-    parameters.push_back(
-        everywhere(name, unit, kAntennaSd, recordings, &Recording::fixes, &EffectPattern::fixes));
+    parameters.push_back(everywhere(name, unit, kAntennaSd, recordings, &Observations::fixes,
+                                    &EffectPattern::fixes));
   }
   for (const auto& [session, start] : clocks) {
     const auto known = prior.late.find(session);
     const double so_far = known == prior.late.end() ? 0.0 : known->second;
-    EffectPattern late = lateness_of(session, recordings, &Recording::fixes, &EffectPattern::fixes,
-                                     robot, sessions, [so_far](double) { return so_far; });
+    EffectPattern late =
+        lateness_of(session, recordings, &Observations::fixes, &EffectPattern::fixes, robot,
+                    sessions, [so_far](double) { return so_far; });
     late.name = "fixes late";
     parameters.push_back(std::move(late));
   }
@@ -178,8 +180,9 @@ EffectParameters of_fixes(const std::vector<Recording>& recordings, const Robot&
 
 }  // namespace
 
-EffectParameters reference_alignment(const std::vector<Recording>& recordings, const Robot& robot,
-                                     const ProblemOptions& used, const std::vector<int>& sessions,
+EffectParameters reference_alignment(const std::vector<DrivenRecording>& recordings,
+                                     const Robot& robot, const ProblemOptions& used,
+                                     const std::vector<int>& sessions,
                                      const ReferenceAlignment& prior) {
   EffectParameters parameters;
   if (used.truth) parameters = of_truth(recordings, robot, sessions, prior.truth);
@@ -190,13 +193,13 @@ EffectParameters reference_alignment(const std::vector<Recording>& recordings, c
   return parameters;
 }
 
-ReferenceAlignment alignment_of(const std::vector<Recording>& recordings,
+ReferenceAlignment alignment_of(const std::vector<DrivenRecording>& recordings,
                                 const ProblemOptions& used, const std::vector<int>& sessions,
                                 const Eigen::VectorXd& coefficients) {
   ReferenceAlignment result;
   Eigen::Index at = 0;
   TruthAlignment& truth = result.truth;
-  if (used.truth) truth.clocks = clocks_of(recordings, &Recording::truth, sessions);
+  if (used.truth) truth.clocks = clocks_of(recordings, &Observations::truth, sessions);
   if (!truth.clocks.empty()) {
     truth.ahead = coefficients[at++];
     truth.left = coefficients[at++];
@@ -207,7 +210,7 @@ ReferenceAlignment alignment_of(const std::vector<Recording>& recordings,
     clock.drift = coefficients[at++];
   }
   if (!used.fixes) return result;
-  const auto sessions_with = clocks_of(recordings, &Recording::fixes, sessions);
+  const auto sessions_with = clocks_of(recordings, &Observations::fixes, sessions);
   if (sessions_with.empty()) return result;
   result.fixes.ahead = coefficients[at++];
   result.fixes.left = coefficients[at++];
@@ -216,9 +219,9 @@ ReferenceAlignment alignment_of(const std::vector<Recording>& recordings,
   return result;
 }
 
-std::vector<Recording> aligned(const std::vector<Recording>& recordings,
-                               const TruthAlignment& alignment, const Robot& robot) {
-  std::vector<Recording> result = recordings;
+std::vector<DrivenRecording> aligned(const std::vector<DrivenRecording>& recordings,
+                                     const TruthAlignment& alignment, const Robot& robot) {
+  std::vector<DrivenRecording> result = recordings;
   for (std::size_t k = 0; k < result.size(); ++k) {
     for (TruthRow& row : result[k].truth) {
       const double late = lateness(alignment, static_cast<int>(k), row.t);

@@ -33,20 +33,21 @@ struct ReferenceAlignment {
 /// order, late and clock in turn. Weak priors keep what a motion does not show near 0. None of what
 /// no recording has or is not used. `sessions`: of each recording, where several are segments of
 /// one drive; empty: 0, 1, 2 ... `prior`: what an earlier fit has found.
-[[nodiscard]] EffectParameters reference_alignment(const std::vector<Recording>& recordings,
+[[nodiscard]] EffectParameters reference_alignment(const std::vector<DrivenRecording>& recordings,
                                                    const Robot& robot, const ProblemOptions& used,
                                                    const std::vector<int>& sessions,
                                                    const ReferenceAlignment& prior = {});
 
 /// The estimated coefficients of those parameters, read.
-[[nodiscard]] ReferenceAlignment alignment_of(const std::vector<Recording>& recordings,
+[[nodiscard]] ReferenceAlignment alignment_of(const std::vector<DrivenRecording>& recordings,
                                               const ProblemOptions& used,
                                               const std::vector<int>& sessions,
                                               const Eigen::VectorXd& coefficients);
 
 /// Recordings, session after session, with their truth moved to where it shows the axle's centre
 /// at the time it is stamped.
-[[nodiscard]] std::vector<Recording> aligned(const std::vector<Recording>& recordings,
-                                             const TruthAlignment& alignment, const Robot& robot);
+[[nodiscard]] std::vector<DrivenRecording> aligned(const std::vector<DrivenRecording>& recordings,
+                                                   const TruthAlignment& alignment,
+                                                   const Robot& robot);
 
 }  // namespace trussmap

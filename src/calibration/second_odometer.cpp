@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLeastSd = 1e-5;  // m, rad: nothing that stands still is surer
 
-Loop motion_between(const Drive& drive, double from, double to, const Model& model) {
+Loop motion_between(const MotionRows& drive, double from, double to, const Model& model) {
   const PoseEstimate end = dead_reckon({}, drive, from, to, model.robot, model.noise);
   const Matrix3& P = end.covariance;
   Loop loop{from, to, end.pose.x, end.pose.y, end.pose.heading};
@@ -26,9 +26,9 @@ Loop motion_between(const Drive& drive, double from, double to, const Model& mod
 }  // namespace
 
 std::vector<Loop> second_odometer_loops(const Recording& second, const Model& model,
-                                        const Drive& drive, double every) {
+                                        const DriveColumns& drive, double every) {
   if (!(every > 0.0)) throw std::invalid_argument("motions last longer than 0 s");
-  Drive own = with_wheels(second, model.robot).drive;
+  MotionRows own = with_wheels(second, model.robot).drive;
   own.heading.clear();  // a compass would tie motions together that count as independent
   own = with_gyro(own, model.robot, model.noise);  // once, not for every motion
   if (own.rows() < 2 || drive.rows() < 2) {

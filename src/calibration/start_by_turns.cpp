@@ -28,7 +28,7 @@ std::size_t rows_of_stretch(std::size_t rows) {
   return std::max<std::size_t>(1, rows / kStretches);
 }
 
-Turned turned_by_wheels(const Drive& drive, double from, double to, const Robot& robot) {
+Turned turned_by_wheels(const MotionRows& drive, double from, double to, const Robot& robot) {
   Turned result;
   for (const DriveRow& row : rows_between(drive, from, to)) {
     const BodyMotion body = row.part * body_motion(drive, row.row, robot);
@@ -37,7 +37,7 @@ Turned turned_by_wheels(const Drive& drive, double from, double to, const Robot&
   return result;
 }
 
-void add_turns_of_gyro(const Drive& drive, const Robot& robot, std::vector<Turned>& turns) {
+void add_turns_of_gyro(const MotionRows& drive, const Robot& robot, std::vector<Turned>& turns) {
   const std::size_t stretch = rows_of_stretch(drive.rows());
   Turned sum;
   for (std::size_t row = 0, taken = 0; row < drive.yaw_rate.size(); ++row) {
@@ -50,7 +50,7 @@ void add_turns_of_gyro(const Drive& drive, const Robot& robot, std::vector<Turne
 }
 
 /// Headings that are so close to each other that less than half a turn lies between.
-void add_turns_of_headings(const Drive& drive, const Robot& robot,
+void add_turns_of_headings(const MotionRows& drive, const Robot& robot,
                            const std::vector<std::pair<double, double>>& headings,
                            std::vector<Turned>& turns) {
   const std::size_t stretch = rows_of_stretch(headings.size());
@@ -68,10 +68,10 @@ void add_turns_of_headings(const Drive& drive, const Robot& robot,
   }
 }
 
-std::vector<Turned> turns_of(const std::vector<Recording>& recordings, const Robot& robot) {
+std::vector<Turned> turns_of(const std::vector<DrivenRecording>& recordings, const Robot& robot) {
   std::vector<Turned> turns;
-  for (const Recording& one : recordings) {
-    const Drive& drive = one.drive;
+  for (const DrivenRecording& one : recordings) {
+    const MotionRows& drive = one.drive;
     if (drive.has_gyro()) add_turns_of_gyro(drive, robot, turns);
     std::vector<std::pair<double, double>> headings;
     for (std::size_t row = 0; row < drive.heading.size(); ++row) {
@@ -113,7 +113,7 @@ Eigen::VectorXd fitted_line(const std::vector<Turned>& turns, const std::vector<
 
 }  // namespace
 
-std::optional<GrossStart> start_by_turns(const std::vector<Recording>& recordings,
+std::optional<GrossStart> start_by_turns(const std::vector<DrivenRecording>& recordings,
                                          const Robot& robot) {
   constexpr std::size_t kFewest = 10;
   constexpr double kTurning = 1.0;  // rad, in all

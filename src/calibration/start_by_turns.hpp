@@ -16,7 +16,7 @@ inline constexpr double kNearTurn = 0.1;
 inline constexpr double kNearRatio = 0.05;
 
 /// None where nothing of the kind is there, or the stated constants are as good.
-[[nodiscard]] std::optional<GrossStart> start_by_turns(const std::vector<Recording>& recordings,
-                                                       const Robot& robot);
+[[nodiscard]] std::optional<GrossStart> start_by_turns(
+    const std::vector<DrivenRecording>& recordings, const Robot& robot);
 
 }  // namespace trussmap

@@ -3,9 +3,9 @@
 #include "calibration/truth_holdout.hpp"
 
 #include "calibration/reckoning.hpp"
+#include "drive/legs.hpp"
 #include "geometry/index.hpp"
 #include "odometry/effect_correction.hpp"
-#include "recording/legs.hpp"
 
 #include <cmath>
 #include <optional>
@@ -14,9 +14,9 @@ namespace trussmap {
 namespace {
 
 /// The rows, truth and sightings of one span of time.
-Recording cut(const Recording& whole, double from, double to) {
+DrivenRecording cut(const DrivenRecording& whole, double from, double to) {
   constexpr double kSameTime = 1e-9;  // s
-  Recording part;
+  DrivenRecording part;
   part.name = whole.name;
   part.survey = whole.survey;
   for (const Covariate& covariate : whole.drive.covariates) {
@@ -53,7 +53,7 @@ Recording cut(const Recording& whole, double from, double to) {
 }
 
 /// The heading at truth row `at` by all rows of the second before it.
-double settled_heading(const Recording& recording, std::size_t at, const Robot& robot) {
+double settled_heading(const DrivenRecording& recording, std::size_t at, const Robot& robot) {
   constexpr double kSecond = 1.0;  // s
   const TruthRow& last = recording.truth[at];
   double sum = 0.0;
@@ -71,11 +71,11 @@ double settled_heading(const Recording& recording, std::size_t at, const Robot& 
 
 }  // namespace
 
-std::vector<TruthLeg> truth_legs(const std::vector<Recording>& recordings, double share,
+std::vector<TruthLeg> truth_legs(const std::vector<DrivenRecording>& recordings, double share,
                                  double leg) {
   std::vector<TruthLeg> legs;
   for (std::size_t session = 0; session < recordings.size(); ++session) {
-    const Recording& recording = recordings[session];
+    const DrivenRecording& recording = recordings[session];
     const std::vector<double> path = driven_path(recording.drive);
     std::optional<std::size_t> from;
     double start = 0.0;
@@ -95,7 +95,7 @@ std::vector<TruthLeg> truth_legs(const std::vector<Recording>& recordings, doubl
   return legs;
 }
 
-TrainingSegments without_held_out(const std::vector<Recording>& recordings,
+TrainingSegments without_held_out(const std::vector<DrivenRecording>& recordings,
                                   const std::vector<TruthLeg>& legs) {
   TrainingSegments training_segments;
   for (std::size_t k = 0; k < legs.size();) {
@@ -108,8 +108,8 @@ TrainingSegments without_held_out(const std::vector<Recording>& recordings,
            legs[last + 1].session == legs[k].session) {
       ++last;
     }
-    const Recording& whole = recordings[idx(legs[k].session)];
-    Recording part = cut(whole, whole.truth[legs[k].from].t, whole.truth[legs[last].to].t);
+    const DrivenRecording& whole = recordings[idx(legs[k].session)];
+    DrivenRecording part = cut(whole, whole.truth[legs[k].from].t, whole.truth[legs[last].to].t);
     if (part.drive.rows() >= 2) {
       training_segments.recordings.push_back(std::move(part));
       training_segments.sessions.push_back(legs[k].session);
@@ -119,13 +119,13 @@ TrainingSegments without_held_out(const std::vector<Recording>& recordings,
   return training_segments;
 }
 
-ArrivalErrors arrival_errors(const std::vector<Recording>& recordings,
+ArrivalErrors arrival_errors(const std::vector<DrivenRecording>& recordings,
                              const std::vector<TruthLeg>& legs, const Model& model) {
-  const std::vector<Recording> corrected = without_effects(recordings, model);
+  const std::vector<DrivenRecording> corrected = without_effects(recordings, model);
   ArrivalErrors result;
   for (const TruthLeg& leg : legs) {
     if (!leg.held_out) continue;
-    const Recording& recording = corrected[idx(leg.session)];
+    const DrivenRecording& recording = corrected[idx(leg.session)];
     const TruthRow& from = recording.truth[leg.from];
     const TruthRow& to = recording.truth[leg.to];
     const double heading = settled_heading(recording, leg.from, model.robot);

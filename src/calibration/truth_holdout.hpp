@@ -22,19 +22,19 @@ struct TruthLeg {
 };
 
 /// `share` of the legs, in [0, 1), is held out; `leg` in m.
-[[nodiscard]] std::vector<TruthLeg> truth_legs(const std::vector<Recording>& recordings,
+[[nodiscard]] std::vector<TruthLeg> truth_legs(const std::vector<DrivenRecording>& recordings,
                                                double share, double leg = 1.0);
 
 /// What is left to fit: each unbroken run of legs that are not held out, as a recording.
 struct TrainingSegments {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   std::vector<int> sessions;  ///< which recording each was cut from
 };
-[[nodiscard]] TrainingSegments without_held_out(const std::vector<Recording>& recordings,
+[[nodiscard]] TrainingSegments without_held_out(const std::vector<DrivenRecording>& recordings,
                                                 const std::vector<TruthLeg>& legs);
 
 /// Of the held-out legs, with the model's effects taken out of the rows.
-[[nodiscard]] ArrivalErrors arrival_errors(const std::vector<Recording>& recordings,
+[[nodiscard]] ArrivalErrors arrival_errors(const std::vector<DrivenRecording>& recordings,
                                            const std::vector<TruthLeg>& legs, const Model& model);
 
 }  // namespace trussmap

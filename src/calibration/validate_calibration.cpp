@@ -3,8 +3,8 @@
 #include "calibration/reference_alignment.hpp"
 #include "calibration/truth_holdout.hpp"
 #include "calibration/wheel_calibration.hpp"
+#include "drive/well_formed.hpp"
 #include "geometry/index.hpp"
-#include "recording/well_formed.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 constexpr int kFewestLegs = 5;  // to judge a calibration by
 
 /// A calibration of the wheels by a part of the recordings; none where they are too little.
-std::optional<WheelCalibration> calibration_by(const std::vector<Recording>& recordings,
+std::optional<WheelCalibration> calibration_by(const std::vector<DrivenRecording>& recordings,
                                                const Model& model,
                                                const WheelCalibrationOptions& options) {
   if (recordings.empty()) return std::nullopt;
@@ -32,7 +32,7 @@ std::optional<WheelCalibration> calibration_by(const std::vector<Recording>& rec
 }
 
 /// The held-out legs as the given model and the calibrated one predict them.
-void predict(CalibrationValidation& result, const std::vector<Recording>& recordings,
+void predict(CalibrationValidation& result, const std::vector<DrivenRecording>& recordings,
              const std::vector<TruthLeg>& legs, const Model& nominal, const Model& calibrated) {
   const auto add = [&](ArrivalErrors& to, const Model& model) {
     const ArrivalErrors errors = arrival_errors(recordings, legs, model);
@@ -42,7 +42,7 @@ void predict(CalibrationValidation& result, const std::vector<Recording>& record
   add(result.calibrated, calibrated);
 }
 
-CalibrationValidation by_blocks(const std::vector<Recording>& recordings,
+CalibrationValidation by_blocks(const std::vector<DrivenRecording>& recordings,
                                 const std::vector<TruthLeg>& legs, const Model& model,
                                 WheelCalibrationOptions how) {
   CalibrationValidation result;
@@ -71,7 +71,7 @@ TruthAlignment mean_alignment(const TruthAlignment& others, double start) {
   return result;
 }
 
-CalibrationValidation by_recordings(const std::vector<Recording>& recordings,
+CalibrationValidation by_recordings(const std::vector<DrivenRecording>& recordings,
                                     const std::vector<TruthLeg>& legs, const Model& model,
                                     const WheelCalibrationOptions& how) {
   CalibrationValidation result;
@@ -81,7 +81,7 @@ CalibrationValidation by_recordings(const std::vector<Recording>& recordings,
       if (idx(leg.session) == k) own.push_back({0, leg.from, leg.to, true});
     }
     if (own.empty()) continue;
-    std::vector<Recording> others = recordings;
+    std::vector<DrivenRecording> others = recordings;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
     const auto other = calibration_by(others, model, how);
     if (!other) continue;
@@ -116,7 +116,7 @@ CalibrationGain CalibrationValidation::gain() const {
   return mean > 0.0 ? CalibrationGain::better : CalibrationGain::worse;
 }
 
-CalibrationValidation validate_calibration(const std::vector<Recording>& recordings,
+CalibrationValidation validate_calibration(const std::vector<DrivenRecording>& recordings,
                                            const Model& model, const CalibrationOptions& options) {
   require_well_formed(recordings);
   if (!options.truth || !(options.holdout > 0.0)) return {};

@@ -8,9 +8,9 @@
 #include "calibration/most_likely_noise.hpp"
 #include "calibration/reference_alignment.hpp"
 #include "calibration/sought_constants.hpp"
+#include "drive/well_formed.hpp"
 #include "estimation/recording_adjustment.hpp"
 #include "odometry/effect_correction.hpp"
-#include "recording/well_formed.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ namespace trussmap {
 namespace {
 
 /// Parameters: those of the constants that are wanted, and the alignment of truth and fixes.
-EffectParameters parameters_of(const Wanted& wanted, const std::vector<Recording>& recordings,
+EffectParameters parameters_of(const Wanted& wanted, const std::vector<DrivenRecording>& recordings,
                                const Robot& robot, const WheelCalibrationOptions& options,
                                const ReferenceAlignment& prior) {
   const std::vector<SoughtConstant> constants = sought_constants(robot);
@@ -45,13 +45,13 @@ EffectParameters parameters_of(const Wanted& wanted, const std::vector<Recording
 
 /// The recordings with the model's effects taken out, and a problem of them.
 struct Fitted {
-  std::vector<Recording> corrected;
+  std::vector<DrivenRecording> corrected;
   RecordingProblem problem;
   EffectParameters parameters;
   RecordingAdjustment adjustment;
 };
 
-Fitted fit(const std::vector<Recording>& recordings, const Model& model, const Wanted& wanted,
+Fitted fit(const std::vector<DrivenRecording>& recordings, const Model& model, const Wanted& wanted,
            const WheelCalibrationOptions& options, const ReferenceAlignment& prior) {
   Fitted result;
   result.corrected = without_effects(recordings, model);
@@ -88,7 +88,7 @@ std::string undetermined_text(const SoughtConstant& one, bool scale) {
 }
 
 /// Which of them the motion determines: each alone, then jointly.
-Wanted determined(const std::vector<Recording>& recordings, const Model& model,
+Wanted determined(const std::vector<DrivenRecording>& recordings, const Model& model,
                   const WheelCalibrationOptions& options, std::vector<std::string>& undetermined) {
   // Without a measured distance the least chi^2 lies at a smaller map: its errors shrink with it.
   const bool scale = measures_distance(recordings, options.problem, model.noise);
@@ -168,7 +168,7 @@ bool stands_still(const RecordingAdjustment& adjustment, Eigen::Index geometry) 
 
 /// Wheels that run backwards, or change sides: the truth is not what it is said to be.
 void require_positive(const std::vector<double>& g, const Wanted& wanted,
-                      const std::vector<Recording>& recordings, const Model& model,
+                      const std::vector<DrivenRecording>& recordings, const Model& model,
                       const ProblemOptions& options) {
   const std::vector<SoughtConstant> constants = sought_constants(model.robot);
   for (std::size_t k = 0; k < constants.size(); ++k) {
@@ -192,8 +192,8 @@ WheelCalibrationOptions calibration_options(const CalibrationOptions& options) {
   return result;
 }
 
-WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, const Model& model,
-                                  const CalibrationOptions& options) {
+WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
+                                  const Model& model, const CalibrationOptions& options) {
   require_well_formed(recordings);
   return calibrate_wheels(recordings, model, calibration_options(options));
 }
@@ -201,8 +201,9 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
 namespace {
 
 /// From these values of the constants on.
-WheelCalibration calibrated_from(std::vector<double> g, const std::vector<Recording>& recordings,
-                                 const Model& model, const WheelCalibrationOptions& options) {
+WheelCalibration calibrated_from(std::vector<double> g,
+                                 const std::vector<DrivenRecording>& recordings, const Model& model,
+                                 const WheelCalibrationOptions& options) {
   constexpr int kRounds = 8;
   constexpr double kSettled = 1e-10;
   WheelCalibration result;
@@ -265,7 +266,7 @@ struct Led {
 /// Of the starts the one that leads to the least chi^2; the first that leads to a possible one is
 /// good enough.
 std::optional<Led> leading(const std::vector<std::vector<double>>& starts,
-                           const std::vector<Recording>& recordings, const Model& model,
+                           const std::vector<DrivenRecording>& recordings, const Model& model,
                            WheelCalibrationOptions options) {
   constexpr double kPossible = 10.0;  // chi^2/dof
   options.noise = false;
@@ -284,7 +285,7 @@ std::optional<Led> leading(const std::vector<std::vector<double>>& starts,
 }
 
 /// From the stated constants, but where they are wrong by a factor.
-WheelCalibration calibrated(const std::vector<Recording>& recordings, const Model& model,
+WheelCalibration calibrated(const std::vector<DrivenRecording>& recordings, const Model& model,
                             const WheelCalibrationOptions& options) {
   const std::vector<double> stated = in_force(model);
   std::vector<std::vector<double>> starts;
@@ -302,8 +303,8 @@ WheelCalibration calibrated(const std::vector<Recording>& recordings, const Mode
 
 }  // namespace
 
-WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, const Model& model,
-                                  const WheelCalibrationOptions& options) {
+WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
+                                  const Model& model, const WheelCalibrationOptions& options) {
   const std::vector<double> g = in_force(model);
   const std::optional<std::size_t> gain = place_of_gain(model.robot);
   if (!gain) return calibrated(recordings, model, options);

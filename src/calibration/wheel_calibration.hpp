@@ -20,7 +20,7 @@ struct WheelCalibrationOptions {
 
 [[nodiscard]] WheelCalibrationOptions calibration_options(const CalibrationOptions& options);
 
-[[nodiscard]] WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings,
+[[nodiscard]] WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
                                                 const Model& model,
                                                 const WheelCalibrationOptions& options);
 

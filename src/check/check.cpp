@@ -4,9 +4,9 @@
 
 #include "check/findings.hpp"
 #include "check/turn_signs.hpp"
+#include "drive/legs.hpp"
+#include "drive/well_formed.hpp"
 #include "geometry/units.hpp"
-#include "recording/legs.hpp"
-#include "recording/well_formed.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ constexpr int kHandful = 5;            // degrees of freedom that test nothing
 
 /// Degrees of freedom of what was recorded, counted as the adjustment does but for what a compass
 /// adds on the way.
-int degrees_of_freedom(const Recording& recording, std::set<std::string_view>& landmarks) {
+int degrees_of_freedom(const DrivenRecording& recording, std::set<std::string_view>& landmarks) {
   std::set<double> instants;
   int rows = 0;
   for (const Sighting& one : recording.sightings) {
@@ -51,12 +51,12 @@ int degrees_of_freedom(const Recording& recording, std::set<std::string_view>& l
   return rows + segments * (recording.drive.has_compass() ? 4 : 3) - 3 * poses;
 }
 
-void check_freedom(const std::vector<Recording>& recordings, CheckFindings& findings) {
+void check_freedom(const std::vector<DrivenRecording>& recordings, CheckFindings& findings) {
   std::set<std::string_view> landmarks;
   std::set<std::string_view> surveyed;
   int dof = 0;
   bool framed = false;
-  for (const Recording& one : recordings) {
+  for (const DrivenRecording& one : recordings) {
     dof += degrees_of_freedom(one, landmarks);
     framed = framed || !one.truth.empty() || !one.fixes.empty();
     for (const SurveyPoint& point : one.survey) surveyed.insert(point.landmark);
@@ -67,12 +67,13 @@ void check_freedom(const std::vector<Recording>& recordings, CheckFindings& find
   if (!framed && surveyed.empty()) dof += 2 + (recordings.front().drive.has_compass() ? 0 : 1);
   // What a compass adds between sightings is not counted: where it has many readings, enough.
   constexpr std::size_t kManyReadings = 50;
-  const bool reads = std::any_of(recordings.begin(), recordings.end(), [](const Recording& one) {
-    return one.drive.has_compass() && one.drive.rows() >= kManyReadings;
-  });
+  const bool reads =
+      std::any_of(recordings.begin(), recordings.end(), [](const DrivenRecording& one) {
+        return one.drive.has_compass() && one.drive.rows() >= kManyReadings;
+      });
   if (dof >= kHandful || (reads && dof > -kHandful)) return;
   Checked all{recordings.front(), findings};
-  const Recording& one = recordings.front();
+  const DrivenRecording& one = recordings.front();
   all.add(!one.sightings.empty() ? "sightings.csv"
           : !one.truth.empty()   ? "truth.csv"
           : !one.fixes.empty()   ? "fixes.csv"
@@ -143,7 +144,7 @@ void check_wheelbase(Checked& checked, const Model& model, const std::string& mo
 
 /// The same travels, readings and sightings, to the last digit: a programme driven twice has its
 /// own readings.
-bool same_session(const Recording& a, const Recording& b) {
+bool same_session(const DrivenRecording& a, const DrivenRecording& b) {
   const auto same_sighting = [](const Sighting& one, const Sighting& other) {
     return one.landmark == other.landmark && one.t == other.t;
   };
@@ -161,7 +162,7 @@ bool same_session(const Recording& a, const Recording& b) {
          std::equal(a.truth.begin(), a.truth.end(), b.truth.begin(), b.truth.end(), same_truth);
 }
 
-void check_twice(const std::vector<Recording>& recordings, CheckFindings& findings) {
+void check_twice(const std::vector<DrivenRecording>& recordings, CheckFindings& findings) {
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     for (std::size_t other = 0; other < k; ++other) {
       if (!same_session(recordings[k], recordings[other])) continue;
@@ -175,7 +176,7 @@ void check_twice(const std::vector<Recording>& recordings, CheckFindings& findin
   }
 }
 
-bool never_negative(const Drive& drive) {
+bool never_negative(const MotionRows& drive) {
   const auto negative = [](double travel) { return travel < 0.0; };
   if (!drive.wheels.empty()) {
     return std::none_of(drive.wheels.begin(), drive.wheels.end(), [&](const WheelColumn& one) {
@@ -237,7 +238,7 @@ void check_turns(Checked& checked, const Turns& turns, const SurveyAgreement& su
 /// One of two wheels, or unsigned ones, where the wheels agree with nothing as they are.
 void check_contradicted_wheels(Checked& checked, const TurnAgreement& turns,
                                const SurveyAgreement& surveyed, const TruthAgreement& truth) {
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   const bool two = drive.wheels.empty();
   if (two && (surveyed.contradicts || truth.contradicts)) {
     check_lone_wheel(checked, surveyed.contradicts, truth.contradicts);
@@ -258,7 +259,7 @@ void check_contradicted_wheels(Checked& checked, const TurnAgreement& turns,
 
 /// Of one recording. Returns what its compass says of the wheels.
 TurnAgreement check_recording(Checked& checked) {
-  const Recording& recording = checked.recording;
+  const DrivenRecording& recording = checked.recording;
   check_names(checked);
   check_drive_values(checked);
   check_bearing_unit(checked);
@@ -317,7 +318,7 @@ void check_fix_unit(Checked& checked) {
   constexpr double kFarTooShort = 1e-4;  // a degree is 111 km
   constexpr double kStuck = 1e-7;
   constexpr int kFewest = 3;
-  const Recording& recording = checked.recording;
+  const DrivenRecording& recording = checked.recording;
   const std::vector<double> path = driven_path(recording.drive);
   double driven = 0.0;
   double moved = 0.0;
@@ -345,8 +346,8 @@ void check_fix_unit(Checked& checked) {
 }
 
 /// With its wheels taken in; a steering angle in degrees, which may lead nowhere, as what it is.
-Recording by_its_columns(Recording recording, const Robot& robot) {
-  if (recording.drive.wheels.empty() && steers_in_degrees(recording, robot)) {
+DrivenRecording by_its_columns(Recording recording, const Robot& robot) {
+  if (steers_in_degrees(recording, robot)) {
     for (Covariate& one : recording.drive.covariates) {
       if (one.name != robot.columns[1]) continue;
       for (double& angle : one.values) angle *= kDegree;
@@ -371,12 +372,12 @@ std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordi
   CheckFindings findings;
   if (recordings.empty()) return findings;
   const bool by_columns = model != nullptr && !model->robot.columns.empty();
-  std::vector<Recording> taken;
+  std::vector<DrivenRecording> all;
+  all.reserve(recordings.size());
   for (const Recording& one : recordings) {
-    if (by_columns) taken.push_back(by_its_columns(one, model->robot));
+    all.push_back(by_columns ? by_its_columns(one, model->robot) : with_wheels(one, Robot()));
   }
-  const std::vector<Recording>& all = by_columns ? taken : recordings;
-  for (const Recording& one : all) require_well_formed(one);
+  for (const DrivenRecording& one : all) require_well_formed(one);
   if (model != nullptr && !model->robot.wheelbase_stated) {
     findings.push_back(
         {model_file, "wheelbase", "no wheelbase",

@@ -53,13 +53,13 @@ struct MistakeExplanation {
 
 std::vector<MistakeExplanation> explanations(const Checked& checked, const MisfitFrame& frame,
                                              const std::vector<Misfit>& recorded, double misfit) {
-  const Recording& recording = checked.recording;
-  const Drive& drive = recording.drive;
+  const DrivenRecording& recording = checked.recording;
+  const MotionRows& drive = recording.drive;
   std::vector<MistakeExplanation> result;
   const double limit = std::min(kFits, kBetter * misfit);
   double best = limit;
   for (ColumnMistake& mistake : column_mistakes(*checked.robot)) {
-    const std::optional<Drive> other = drive_without(mistake, drive, *checked.robot);
+    const std::optional<MotionRows> other = drive_without(mistake, drive, *checked.robot);
     if (!other) continue;
     const std::optional<std::vector<Misfit>> now = misfits_below(limit, recording, *other, frame);
     if (!now || !all_tell(recorded, *now)) continue;
@@ -104,7 +104,7 @@ bool steers_in_degrees(const Recording& recording, const Robot& robot) {
 
 void check_columns(Checked& checked) {
   if (checked.wrong.contains("left") || checked.wrong.contains("t")) return;
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   const MisfitFrame frame{checked.wheelbase, checked.angle_unit, drive.start(), drive.t.back()};
   const std::vector<Misfit> recorded = misfits(checked.recording, drive, frame);
   const Worst worst = worst_of(recorded, &Misfit::best);

@@ -142,10 +142,10 @@ std::string remedy_of(const ColumnMistake& mistake, const Robot& robot) {
          (factor < 0.0 ? ", and change its sign: left positive" : "");
 }
 
-std::optional<Drive> drive_without(const ColumnMistake& mistake, const Drive& drive,
-                                   const Robot& robot) {
+std::optional<MotionRows> drive_without(const ColumnMistake& mistake, const MotionRows& drive,
+                                        const Robot& robot) {
   const WheelKinematics kinematics(robot);
-  Drive result;
+  MotionRows result;
   result.t = drive.t;
   kinematics.prepare(result, drive.rows());
   bool same = true;

@@ -39,7 +39,7 @@ struct ColumnMistake {
 
 /// The drive as it would be without the mistake; nothing where that has an impossible row, or would
 /// be the same.
-[[nodiscard]] std::optional<Drive> drive_without(const ColumnMistake& mistake, const Drive& drive,
-                                                 const Robot& robot);
+[[nodiscard]] std::optional<MotionRows> drive_without(const ColumnMistake& mistake,
+                                                      const MotionRows& drive, const Robot& robot);
 
 }  // namespace trussmap

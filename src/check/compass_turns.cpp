@@ -27,7 +27,7 @@ double wrapped(double angle, double turn) {
 /// Readings in units of which `turn` are a whole turn, brought within half of one or going on.
 TurnAgreement turns_of(const Checked& checked, WheelMistake mistake, double turn,
                        bool wrap = true) {
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   const double stretch = drive.wheels.empty() ? kTurningTravel : kTellingTurn * checked.wheelbase;
   double dd = 0.0;
   double dc = 0.0;
@@ -68,7 +68,7 @@ TurnAgreement turns_of(const Checked& checked, WheelMistake mistake, double turn
 }
 
 /// Seconds in which the compass turns as wheels make it on the spot, both going on by as much.
-int turns_on_the_spot(const Drive& drive, double wheelbase) {
+int turns_on_the_spot(const MotionRows& drive, double wheelbase) {
   constexpr double kWindow = 1.0;  // s
   constexpr double kTurns = 0.4;   // rad
   int count = 0;
@@ -112,7 +112,7 @@ bool looks_unsigned(double turn, double difference, double sum, double wheelbase
 }
 
 TurnAgreement check_compass(Checked& checked) {
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   if (!drive.has_compass() || checked.wrong.contains("left")) return {};
   TurnAgreement best = turns_of(checked, WheelMistake::none, 2.0 * std::numbers::pi);
   if (best.turns >= kFewestTurns && std::abs(best.correlation) < kClearTurns) {

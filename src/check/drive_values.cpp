@@ -30,14 +30,14 @@ struct Rows {
   }
 };
 
-bool travels_are_whole(const Drive& drive, std::size_t row) {
+bool travels_are_whole(const MotionRows& drive, std::size_t row) {
   const auto whole = [](double travel) { return travel == std::round(travel); };
   if (drive.wheels.empty()) return whole(drive.left[row]) && whole(drive.right[row]);
   return std::all_of(drive.wheels.begin(), drive.wheels.end(),
                      [&](const WheelColumn& one) { return one.steers || whole(one.reading[row]); });
 }
 
-Rows rows_of(const Drive& drive) {
+Rows rows_of(const MotionRows& drive) {
   Rows rows;
   std::vector<double> durations;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
@@ -76,7 +76,7 @@ void check_units(Checked& checked, const Rows& rows) {
 
 void check_spikes(Checked& checked, const Rows& rows) {
   if (checked.wrong.contains("left") || rows.driving.size() < 20) return;
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   const double usual = rows.driving[rows.driving.size() * 99 / 100];
   std::vector<std::size_t> spikes;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
@@ -100,7 +100,7 @@ void check_spikes(Checked& checked, const Rows& rows) {
 
 }  // namespace
 
-double larger_travel(const Drive& drive, std::size_t row) {
+double larger_travel(const MotionRows& drive, std::size_t row) {
   const double ahead = std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
   return drive.sideways.empty() ? ahead : std::hypot(ahead, drive.sideways[row]);
 }

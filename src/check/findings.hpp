@@ -21,7 +21,7 @@ using CheckFindings = std::vector<CheckFinding>;
 /// A recording with its own finding list; parts that come later do not trust what earlier ones
 /// found wrong.
 struct Checked {
-  const Recording& recording;
+  const DrivenRecording& recording;
   CheckFindings& findings;
   std::set<std::string> wrong = {};  ///< columns that something was found of
   double wheelbase = 0.0;            ///< m, the model's or what stands for it
@@ -46,7 +46,7 @@ struct Checked {
 void check_drive_values(Checked& checked);
 
 /// Travel of the wheel that goes further in this row, m.
-[[nodiscard]] double larger_travel(const Drive& drive, std::size_t row);
+[[nodiscard]] double larger_travel(const MotionRows& drive, std::size_t row);
 
 /// What rows are like: medians.
 struct UsualRow {
@@ -105,9 +105,9 @@ struct TurnAgreement {
 [[nodiscard]] TurnAgreement check_views(Checked& checked, const Track& track);
 /// Median error of views predicted from earlier ones, by the size of the shift, at most 1; of those
 /// within [from, to] s, where there are enough.
-[[nodiscard]] std::optional<double> views_misfit(const Recording& recording, const Track& track,
-                                                 double range_unit, double bearing_unit,
-                                                 double from, double to);
+[[nodiscard]] std::optional<double> views_misfit(const DrivenRecording& recording,
+                                                 const Track& track, double range_unit,
+                                                 double bearing_unit, double from, double to);
 
 /// Units of yaws and of surveyed headings by themselves.
 void check_yaw_units(Checked& checked);

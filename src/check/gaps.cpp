@@ -4,7 +4,7 @@
 // Rows that are missing. Loggers are silent where nothing happens, too: the wheels come to rest
 // before such a gap and start after it, and truth or compass are on both sides what they were.
 #include "check/findings.hpp"
-#include "recording/legs.hpp"
+#include "drive/legs.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ auto first_from(const std::vector<Timed>& all, double t) {
 }
 
 /// The way of the faster wheel to the end of each row, m: on the spot the axle's centre has none.
-std::vector<double> way_of(const Drive& drive) {
+std::vector<double> way_of(const MotionRows& drive) {
   std::vector<double> way;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     way.push_back(larger_travel(drive, row) + (row == 0 ? 0.0 : way.back()));
@@ -44,7 +44,7 @@ std::vector<double> way_of(const Drive& drive) {
 
 /// The wheels slow down before the row and gather speed from it on, or turn the robot on the spot,
 /// if they move at all.
-bool rests_in(const Drive& drive, std::size_t row, const UsualRow& usual) {
+bool rests_in(const MotionRows& drive, std::size_t row, const UsualRow& usual) {
   const auto speed = [&](std::size_t k) {
     return larger_travel(drive, k) / std::min(drive.duration(k), usual.duration);
   };
@@ -64,9 +64,9 @@ bool rests_in(const Drive& drive, std::size_t row, const UsualRow& usual) {
 
 /// Whether truth is where it was; nothing where it has no row on both sides, or in the gap, between
 /// which the wheels have gone nowhere.
-std::optional<bool> stands_by_truth(const Recording& recording, const std::vector<double>& path,
-                                    double from, double to) {
-  const Drive& drive = recording.drive;
+std::optional<bool> stands_by_truth(const DrivenRecording& recording,
+                                    const std::vector<double>& path, double from, double to) {
+  const MotionRows& drive = recording.drive;
   const double here = path_at(drive, path, from);
   const TruthRow* first = nullptr;
   bool late = false;
@@ -92,7 +92,7 @@ std::optional<bool> stands_by_truth(const Recording& recording, const std::vecto
 
 /// The same of the compass: the last reading before the row and the first from it on, less what the
 /// wheels have turned in between.
-std::optional<bool> stands_by_compass(const Drive& drive, std::size_t row, double wheelbase) {
+std::optional<bool> stands_by_compass(const MotionRows& drive, std::size_t row, double wheelbase) {
   if (!drive.has_compass()) return std::nullopt;
   std::size_t before = row - 1;
   std::size_t after = row;
@@ -109,7 +109,7 @@ std::optional<bool> stands_by_compass(const Drive& drive, std::size_t row, doubl
 }
 
 /// It has stood on one landmark on this side and on another one on that.
-bool stands_elsewhere(const Recording& recording, double from, double to) {
+bool stands_elsewhere(const DrivenRecording& recording, double from, double to) {
   const Sighting* first = nullptr;
   for (auto at = first_from(recording.sightings, from - kBeside);
        at != recording.sightings.end() && at->t <= to + kBeside; ++at) {
@@ -122,8 +122,8 @@ bool stands_elsewhere(const Recording& recording, double from, double to) {
 
 bool stands_still_over(const Checked& checked, const std::vector<double>& path, std::size_t row,
                        const UsualRow& usual) {
-  const Recording& recording = checked.recording;
-  const Drive& drive = recording.drive;
+  const DrivenRecording& recording = checked.recording;
+  const MotionRows& drive = recording.drive;
   if (!rests_in(drive, row, usual)) return false;
   const double from = drive.t[row - 1];
   const double to = std::max(from, drive.t[row] - usual.duration);
@@ -138,7 +138,7 @@ bool stands_still_over(const Checked& checked, const std::vector<double>& path, 
 
 void check_gaps(Checked& checked, const UsualRow& usual) {
   if (checked.wrong.contains("t")) return;
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   const double longest = std::max(kLongGap, kGapRows * usual.duration);
   const std::vector<double> path = way_of(drive);
   std::vector<std::size_t> gaps;

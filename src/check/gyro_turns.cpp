@@ -20,7 +20,7 @@ constexpr double kFar = 3.0;          // factor beside degrees per radian
 }  // namespace
 
 TurnAgreement check_gyro(Checked& checked) {
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   TurnAgreement result;
   if (!drive.has_gyro() || checked.wrong.contains("left")) return result;
   double ww = 0.0;

@@ -66,8 +66,8 @@ class TurnMisfit {
 constexpr std::array<double, 4> kUnits{1.0, -1.0, kDegree, -kDegree};
 
 struct Window {
-  const Recording& recording;
-  const Drive& drive;
+  const DrivenRecording& recording;
+  const MotionRows& drive;
   const Track& track;
   MisfitFrame frame;
 
@@ -294,7 +294,7 @@ std::string_view name_of(Witness witness) {
   return kNames.at(static_cast<std::size_t>(witness));
 }
 
-std::vector<Misfit> misfits(const Recording& recording, const Drive& drive,
+std::vector<Misfit> misfits(const DrivenRecording& recording, const MotionRows& drive,
                             const MisfitFrame& frame) {
   constexpr double kGood = 0.1;  // needs no excuse
   const Track track(drive, frame.wheelbase);
@@ -313,8 +313,9 @@ std::vector<Misfit> misfits(const Recording& recording, const Drive& drive,
   return result;
 }
 
-std::optional<std::vector<Misfit>> misfits_below(double limit, const Recording& recording,
-                                                 const Drive& drive, const MisfitFrame& frame) {
+std::optional<std::vector<Misfit>> misfits_below(double limit, const DrivenRecording& recording,
+                                                 const MotionRows& drive,
+                                                 const MisfitFrame& frame) {
   const Track track(drive, frame.wheelbase);
   const Window in{recording, drive, track, frame};
   std::vector<Misfit> result;

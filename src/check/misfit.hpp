@@ -45,12 +45,12 @@ struct MisfitFrame {
 };
 
 /// Of the witnesses that tell enough.
-[[nodiscard]] std::vector<Misfit> misfits(const Recording& recording, const Drive& drive,
+[[nodiscard]] std::vector<Misfit> misfits(const DrivenRecording& recording, const MotionRows& drive,
                                           const MisfitFrame& frame);
 /// The same as recorded alone; nothing where one exceeds the limit.
 [[nodiscard]] std::optional<std::vector<Misfit>> misfits_below(double limit,
-                                                               const Recording& recording,
-                                                               const Drive& drive,
+                                                               const DrivenRecording& recording,
+                                                               const MotionRows& drive,
                                                                const MisfitFrame& frame);
 
 }  // namespace trussmap

@@ -29,7 +29,7 @@ struct Stretch {
   double travel = 0.0;  ///< m, of the fastest other wheel
 };
 
-double fastest_other(const Drive& drive, std::size_t column, std::size_t row) {
+double fastest_other(const MotionRows& drive, std::size_t column, std::size_t row) {
   double fastest = 0.0;
   for (std::size_t k = 0; k < drive.wheels.size(); ++k) {
     if (k == column || drive.wheels[k].steers) continue;
@@ -39,7 +39,7 @@ double fastest_other(const Drive& drive, std::size_t column, std::size_t row) {
 }
 
 /// The longest time in which the column does not move.
-Stretch longest_still(const Drive& drive, std::size_t column) {
+Stretch longest_still(const MotionRows& drive, std::size_t column) {
   const std::vector<double>& reading = drive.wheels[column].reading;
   Stretch longest;
   Stretch now;
@@ -58,7 +58,7 @@ Stretch longest_still(const Drive& drive, std::size_t column) {
   return longest;
 }
 
-double turned(const Drive& drive, const Stretch& in, double wheelbase) {
+double turned(const MotionRows& drive, const Stretch& in, double wheelbase) {
   double sum = 0.0;
   for (std::size_t row = in.first; row < in.end; ++row) {
     sum += std::abs(drive.right[row] - drive.left[row]) / wheelbase;
@@ -68,7 +68,7 @@ double turned(const Drive& drive, const Stretch& in, double wheelbase) {
 
 /// The misfit of the witness that agrees least in the stretch; nothing where none tells.
 std::optional<Misfit> contradiction(const Checked& checked, const Stretch& in) {
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   const double from = in.first == 0 ? drive.start() : drive.t[in.first - 1];
   const std::vector<Misfit> all = misfits(
       checked.recording, drive, {checked.wheelbase, checked.angle_unit, from, drive.t[in.end - 1]});
@@ -91,7 +91,7 @@ bool is_unlikely(const Checked& checked, const Stretch& in) {
 }
 
 void ask_wheel(Checked& checked, std::size_t column) {
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   const bool only =
       checked.robot->drive == DriveKind::tricycle || checked.robot->drive == DriveKind::ackermann;
   const Stretch still = longest_still(drive, column);
@@ -115,7 +115,7 @@ void ask_wheel(Checked& checked, std::size_t column) {
 }
 
 void ask_steering(Checked& checked, std::size_t column) {
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   const std::vector<double>& angle = drive.wheels[column].reading;
   const auto [least, most] = std::minmax_element(angle.begin(), angle.end());
   if (*least != *most) return;
@@ -133,7 +133,7 @@ void ask_steering(Checked& checked, std::size_t column) {
 
 void check_still_columns(Checked& checked) {
   if (checked.wrong.contains("left") || checked.wrong.contains("t")) return;
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   for (std::size_t k = 0; k < drive.wheels.size(); ++k) {
     if (drive.wheels[k].steers) {
       ask_steering(checked, k);

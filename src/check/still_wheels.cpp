@@ -5,7 +5,7 @@
 // robot that turns about it, which compass, gyro, truth or bearings show.
 #include "check/findings.hpp"
 #include "check/still_limits.hpp"
-#include "recording/legs.hpp"
+#include "drive/legs.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -61,7 +61,7 @@ struct StillStretch {
 };
 
 /// By the wheels at the end of each row, from 0 at the drive's start, rad.
-std::vector<double> wheel_headings(const Drive& drive, double wheelbase) {
+std::vector<double> wheel_headings(const MotionRows& drive, double wheelbase) {
   std::vector<double> headings;
   headings.reserve(drive.rows());
   double heading = 0.0;
@@ -72,7 +72,7 @@ std::vector<double> wheel_headings(const Drive& drive, double wheelbase) {
   return headings;
 }
 
-Turned by_compass(const Drive& drive, const StillStretch& stretch,
+Turned by_compass(const MotionRows& drive, const StillStretch& stretch,
                   const std::vector<double>& wheels) {
   Turned turned;
   std::size_t last = drive.rows();
@@ -86,7 +86,7 @@ Turned by_compass(const Drive& drive, const StillStretch& stretch,
   return turned;
 }
 
-Turned by_gyro(const Drive& drive, const StillStretch& stretch, double wheelbase) {
+Turned by_gyro(const MotionRows& drive, const StillStretch& stretch, double wheelbase) {
   Turned turned;
   for (std::size_t row = stretch.first; drive.has_gyro() && row < stretch.end; ++row) {
     if (std::isnan(drive.yaw_rate[row])) continue;
@@ -96,10 +96,10 @@ Turned by_gyro(const Drive& drive, const StillStretch& stretch, double wheelbase
   return turned;
 }
 
-Turned by_truth(const Recording& recording, const StillStretch& stretch,
+Turned by_truth(const DrivenRecording& recording, const StillStretch& stretch,
                 const std::vector<double>& wheels) {
   Turned turned;
-  const Drive& drive = recording.drive;
+  const MotionRows& drive = recording.drive;
   const TruthRow* last = nullptr;
   for (const TruthRow& one : recording.truth) {
     if (one.t < drive.t[stretch.first] || one.t > drive.t[stretch.end - 1]) continue;
@@ -113,10 +113,10 @@ Turned by_truth(const Recording& recording, const StillStretch& stretch,
 }
 
 /// A landmark goes round a robot that turns.
-Turned by_bearings(const Recording& recording, const StillStretch& stretch,
+Turned by_bearings(const DrivenRecording& recording, const StillStretch& stretch,
                    const std::vector<double>& wheels) {
   Turned turned;
-  const Drive& drive = recording.drive;
+  const MotionRows& drive = recording.drive;
   std::map<std::string_view, const Sighting*> seen;
   for (const Sighting& one : recording.sightings) {
     const bool within = one.t >= drive.t[stretch.first] && one.t <= drive.t[stretch.end - 1];
@@ -134,7 +134,7 @@ Turned by_bearings(const Recording& recording, const StillStretch& stretch,
 /// A turn about the wheel: at least one shows it, and none contradicts.
 bool turns_about_it(const Checked& checked, const StillStretch& stretch,
                     const std::vector<double>& wheels) {
-  const Recording& recording = checked.recording;
+  const DrivenRecording& recording = checked.recording;
   bool shown = false;
   for (const Turned& one :
        std::array{by_compass(recording.drive, stretch, wheels),
@@ -199,7 +199,7 @@ void ask(Checked& checked, const std::vector<double>& wheels, const char* name,
 }  // namespace
 
 void check_still_wheels(Checked& checked) {
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   const std::vector<double> wheels = wheel_headings(drive, checked.wheelbase);
   ask(checked, wheels, "left", drive.left, drive.right);
   ask(checked, wheels, "right", drive.right, drive.left);

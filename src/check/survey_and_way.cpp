@@ -70,7 +70,7 @@ Sign sign_of(const std::vector<SurveyLeg>& legs, double ratio) {
 
 /// The compass's reading less the track's heading where a leg ends.
 void check_compass_frame(Checked& checked, const Track& track, const std::vector<SurveyLeg>& legs) {
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   MeanAngle offset;
   for (const SurveyLeg& leg : legs) {
     const auto row = static_cast<std::size_t>(
@@ -168,7 +168,7 @@ void check_units(Checked& checked, const SurveyAgreement& agreement) {
 }  // namespace
 
 SurveyAgreement survey_agreement(const Checked& checked, const Track& track) {
-  const Recording& recording = checked.recording;
+  const DrivenRecording& recording = checked.recording;
   SurveyAgreement result;
   if (recording.survey.empty() || recording.sightings.empty()) return result;
   const SurveyPlaces places = surveyed_places(recording);
@@ -199,7 +199,7 @@ int sign_of_fixes(const Checked& checked, const Track& track) {
 
 void check_survey(Checked& checked, const Track& track, const SurveyAgreement& agreement,
                   bool compass) {
-  const Recording& recording = checked.recording;
+  const DrivenRecording& recording = checked.recording;
   if (recording.survey.empty() || recording.sightings.empty()) return;
   const std::set<std::string_view> sighted = sighted_landmarks(recording);
   const SurveyPlaces places = surveyed_places(recording);

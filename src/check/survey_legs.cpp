@@ -16,13 +16,13 @@ constexpr std::size_t kMost = 400;  // that cost next to nothing
 
 }  // namespace
 
-std::set<std::string_view> sighted_landmarks(const Recording& recording) {
+std::set<std::string_view> sighted_landmarks(const DrivenRecording& recording) {
   std::set<std::string_view> names;
   for (const Sighting& one : recording.sightings) names.insert(one.landmark);
   return names;
 }
 
-SurveyPlaces surveyed_places(const Recording& recording) {
+SurveyPlaces surveyed_places(const DrivenRecording& recording) {
   const std::set<std::string_view> sighted = sighted_landmarks(recording);
   SurveyPlaces places;
   for (const SurveyPoint& one : recording.survey) {
@@ -31,7 +31,7 @@ SurveyPlaces surveyed_places(const Recording& recording) {
   return places;
 }
 
-std::vector<SurveyLeg> legs_by_way(const Recording& recording, const SurveyPlaces& places,
+std::vector<SurveyLeg> legs_by_way(const DrivenRecording& recording, const SurveyPlaces& places,
                                    const Track& track) {
   std::vector<SurveyLeg> legs;
   const Sighting* before = nullptr;
@@ -48,7 +48,7 @@ std::vector<SurveyLeg> legs_by_way(const Recording& recording, const SurveyPlace
   return thinned(std::move(legs), kMost);
 }
 
-std::vector<SurveyLeg> legs_by_views(const Recording& recording, const SurveyPlaces& places,
+std::vector<SurveyLeg> legs_by_views(const DrivenRecording& recording, const SurveyPlaces& places,
                                      const Track& track, double bearing_unit) {
   std::vector<SurveyLeg> legs;
   const Sighting* before = nullptr;
@@ -65,7 +65,7 @@ std::vector<SurveyLeg> legs_by_views(const Recording& recording, const SurveyPla
   return thinned(std::move(legs), kMost);
 }
 
-std::vector<SurveyLeg> legs_by_fixes(const Recording& recording, const Track& track) {
+std::vector<SurveyLeg> legs_by_fixes(const DrivenRecording& recording, const Track& track) {
   constexpr double kLeg = 5.0;       // m: corners are told in spite of a GNSS receiver's errors
   constexpr double kLongest = 60.0;  // s
   std::vector<SurveyLeg> legs;

@@ -24,18 +24,19 @@ struct SurveyLeg {
 
 using SurveyPlaces = std::map<std::string_view, Vector2>;
 
-[[nodiscard]] std::set<std::string_view> sighted_landmarks(const Recording& recording);
+[[nodiscard]] std::set<std::string_view> sighted_landmarks(const DrivenRecording& recording);
 /// Of the landmarks that were sighted.
-[[nodiscard]] SurveyPlaces surveyed_places(const Recording& recording);
+[[nodiscard]] SurveyPlaces surveyed_places(const DrivenRecording& recording);
 
 /// From stop to stop on two of them.
-[[nodiscard]] std::vector<SurveyLeg> legs_by_way(const Recording& recording,
+[[nodiscard]] std::vector<SurveyLeg> legs_by_way(const DrivenRecording& recording,
                                                  const SurveyPlaces& places, const Track& track);
 /// Between two that are seen at one time.
-[[nodiscard]] std::vector<SurveyLeg> legs_by_views(const Recording& recording,
+[[nodiscard]] std::vector<SurveyLeg> legs_by_views(const DrivenRecording& recording,
                                                    const SurveyPlaces& places, const Track& track,
                                                    double bearing_unit);
 /// From fix to fix, five metres of the way apart.
-[[nodiscard]] std::vector<SurveyLeg> legs_by_fixes(const Recording& recording, const Track& track);
+[[nodiscard]] std::vector<SurveyLeg> legs_by_fixes(const DrivenRecording& recording,
+                                                   const Track& track);
 
 }  // namespace trussmap

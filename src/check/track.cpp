@@ -7,7 +7,7 @@
 
 namespace trussmap {
 
-Wheels wheels_of(const Drive& drive, std::size_t row, WheelMistake mistake) {
+Wheels wheels_of(const MotionRows& drive, std::size_t row, WheelMistake mistake) {
   const double left = drive.left[row];
   const double right = drive.right[row];
   const double sideways = drive.slip(row);
@@ -26,14 +26,14 @@ Wheels wheels_of(const Drive& drive, std::size_t row, WheelMistake mistake) {
   return {left, right, sideways};
 }
 
-std::string wheel_columns(const Drive& drive) {
+std::string wheel_columns(const MotionRows& drive) {
   if (drive.wheels.empty()) return "left,right";
   std::string names;
   for (const WheelColumn& one : drive.wheels) names += (names.empty() ? "" : ",") + one.name;
   return names;
 }
 
-Track::Track(const Drive& drive, double wheelbase, WheelMistake mistake, Heading heading) {
+Track::Track(const MotionRows& drive, double wheelbase, WheelMistake mistake, Heading heading) {
   constexpr double kHeed = 0.05;  // of what the compass says, per reading
   t_.reserve(drive.rows() + 1);
   poses_.reserve(drive.rows() + 1);

@@ -26,10 +26,10 @@ struct Wheels {
   [[nodiscard]] double path() const { return 0.5 * (left + right); }
   [[nodiscard]] double difference() const { return right - left; }
 };
-[[nodiscard]] Wheels wheels_of(const Drive& drive, std::size_t row, WheelMistake mistake);
+[[nodiscard]] Wheels wheels_of(const MotionRows& drive, std::size_t row, WheelMistake mistake);
 
 /// "left,right", or the names of the drive's own columns.
-[[nodiscard]] std::string wheel_columns(const Drive& drive);
+[[nodiscard]] std::string wheel_columns(const MotionRows& drive);
 
 /// Whether headings are kept near a compass's readings.
 enum class Heading { of_wheels, of_compass };
@@ -37,7 +37,7 @@ enum class Heading { of_wheels, of_compass };
 /// Poses at the ends of a drive's rows, from (0, 0, 0) at its start; straight in between.
 class Track {
  public:
-  Track(const Drive& drive, double wheelbase, WheelMistake mistake = WheelMistake::none,
+  Track(const MotionRows& drive, double wheelbase, WheelMistake mistake = WheelMistake::none,
         Heading heading = Heading::of_wheels);
 
   [[nodiscard]] Pose at(double t) const;

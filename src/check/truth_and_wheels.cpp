@@ -34,9 +34,9 @@ struct TruthStretch {
   double way = 0.0;      ///< m driven
 };
 
-std::vector<TruthStretch> stretches_of(const Recording& recording, const Track& track) {
+std::vector<TruthStretch> stretches_of(const DrivenRecording& recording, const Track& track) {
   std::vector<TruthStretch> result;
-  const Drive& drive = recording.drive;
+  const MotionRows& drive = recording.drive;
   const TruthRow* before = nullptr;
   for (const TruthRow& row : recording.truth) {
     if (row.t < drive.start() || row.t > drive.t.back()) continue;
@@ -150,11 +150,11 @@ void check_turned(Checked& checked, const std::vector<TruthStretch>& stretches) 
 }
 
 void check_compass_frame(Checked& checked) {
-  const Recording& recording = checked.recording;
+  const DrivenRecording& recording = checked.recording;
   if (!recording.drive.has_compass() || checked.wrong.contains("heading")) return;
   MeanAngle offset;
   std::size_t row = 0;
-  const Drive& drive = recording.drive;
+  const MotionRows& drive = recording.drive;
   for (const TruthRow& truth : recording.truth) {
     while (row < drive.rows() && drive.t[row] < truth.t) ++row;
     if (row == drive.rows()) break;

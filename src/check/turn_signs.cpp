@@ -27,7 +27,7 @@ struct Blame {
 };
 
 /// A robot that seems to drive backwards nearly all the time has its wheels negated, not exchanged.
-Blame blame_of_wheels(const Drive& drive, double forward) {
+Blame blame_of_wheels(const MotionRows& drive, double forward) {
   const bool steered = !drive.wheels.empty() && drive.wheels.back().steers;
   if (drive.wheels.empty()) {
     if (forward < kBackwards) {
@@ -52,7 +52,7 @@ Blame blame_of_wheels(const Drive& drive, double forward) {
           "name the columns in the order that the drive has, the left side's and the right side's"};
 }
 
-Blame blame_of(Turning quantity, const Drive& drive, double forward) {
+Blame blame_of(Turning quantity, const MotionRows& drive, double forward) {
   switch (quantity) {
     case Turning::wheels:
       return blame_of_wheels(drive, forward);
@@ -85,7 +85,7 @@ Blame blame_of(Turning quantity, const Drive& drive, double forward) {
 }
 
 /// Share of the way that leads forward.
-double forward_share(const Drive& drive) {
+double forward_share(const MotionRows& drive) {
   double forward = 0.0;
   double all = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
@@ -139,7 +139,7 @@ std::vector<Turning> TurnSigns::suspects() const {
 void blame(Checked& checked, const TurnSigns& signs) {
   const std::vector<Turning> culprits = signs.culprits();
   if (culprits.empty()) return;
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   const double forward = forward_share(drive);
   const Blame first = blame_of(culprits.front(), drive, forward);
   if (culprits.size() == 1) {

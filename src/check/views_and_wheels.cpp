@@ -43,8 +43,8 @@ bool is_view(const Sighting& one) {
   return std::isfinite(one.range) && std::isfinite(one.bearing);
 }
 
-std::vector<Pair> pairs_of(const Recording& recording, const Track& track, double from = -HUGE_VAL,
-                           double to = HUGE_VAL) {
+std::vector<Pair> pairs_of(const DrivenRecording& recording, const Track& track,
+                           double from = -HUGE_VAL, double to = HUGE_VAL) {
   std::map<std::string_view, const Sighting*> last;
   std::vector<Pair> pairs;
   for (const Sighting& one : recording.sightings) {
@@ -121,7 +121,7 @@ struct Explained {
 
 /// Of mistakes at the wheels and units of ranges; `best`: as recorded.
 Explained best_explanation(const Checked& checked, const std::vector<Pair>& pairs, Explained best) {
-  const Drive& drive = checked.recording.drive;
+  const MotionRows& drive = checked.recording.drive;
   std::vector<WheelMistake> mistakes{WheelMistake::none, WheelMistake::exchanged};
   if (drive.wheels.empty()) {  // of others, check_columns knows more
     mistakes.insert(mistakes.end(), {WheelMistake::negated, WheelMistake::left_negated,
@@ -195,7 +195,7 @@ void check_bearing_unit(Checked& checked) {
       "convert them to radians");
 }
 
-std::optional<double> views_misfit(const Recording& recording, const Track& track,
+std::optional<double> views_misfit(const DrivenRecording& recording, const Track& track,
                                    double range_unit, double bearing_unit, double from, double to) {
   const std::vector<Pair> pairs = pairs_of(recording, track, from, to);
   if (pairs.size() < kFewestPairs) return std::nullopt;

@@ -36,7 +36,7 @@ std::string missing_effect(const FitState& fit, const ScoreTest& tests, double l
 
 }  // namespace
 
-Comparison compare(const std::vector<Recording>& recordings, const ModelFit& fit,
+Comparison compare(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                    const CompareOptions& options, const ScoreTest& tests, KnownOfFit known) {
   const FitState& state = *fit.state;
   Comparison result;
@@ -67,7 +67,7 @@ Comparison compare(const std::vector<Recording>& recordings, const ModelFit& fit
   return result;
 }
 
-Comparison compare(const std::vector<Recording>& recordings, const ModelFit& fit,
+Comparison compare(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                    const CompareOptions& options) {
   // Before the tests, so that what either needs for a while is not there at once.
   KnownOfFit known;
@@ -75,14 +75,14 @@ Comparison compare(const std::vector<Recording>& recordings, const ModelFit& fit
   return compare(recordings, fit, options, ScoreTest(*fit.state), std::move(known));
 }
 
-Comparison compare(const std::vector<Recording>& recordings, const Model& model,
+Comparison compare(const std::vector<DrivenRecording>& recordings, const Model& model,
                    const CompareOptions& options) {
   FitOptions how = options.fit;
   how.fit_effects = false;
   return compare(recordings, fit_model(recordings, model, how), options);
 }
 
-EffectGain gain_of_effects(const std::vector<Recording>& recordings, const ModelFit& without,
+EffectGain gain_of_effects(const std::vector<DrivenRecording>& recordings, const ModelFit& without,
                            const ModelFit& with, const LegOptions& legs) {
   EffectGain gain{without, with, predict_held_out(recordings, without, legs),
                   predict_held_out(recordings, with, legs)};

@@ -21,8 +21,8 @@ struct KnownOfFit {
 };
 
 /// `tests` are of this fit.
-[[nodiscard]] Comparison compare(const std::vector<Recording>& recordings, const ModelFit& fit,
-                                 const CompareOptions& options, const ScoreTest& tests,
-                                 KnownOfFit known = {});
+[[nodiscard]] Comparison compare(const std::vector<DrivenRecording>& recordings,
+                                 const ModelFit& fit, const CompareOptions& options,
+                                 const ScoreTest& tests, KnownOfFit known = {});
 
 }  // namespace trussmap

@@ -3,8 +3,8 @@
 #include "criticism/data_lacks.hpp"
 
 #include "drive/body_motion.hpp"
+#include "drive/legs.hpp"
 #include "drive/row_variables.hpp"
-#include "recording/legs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -44,8 +44,8 @@ double spread(const std::vector<double>& values) {
   return mean > 0.0 ? std::sqrt(squares / static_cast<double>(values.size())) / mean : 0.0;
 }
 
-void add(const Recording& recording, const Robot& robot, Contents& contents) {
-  const Drive& drive = recording.drive;
+void add(const DrivenRecording& recording, const Robot& robot, Contents& contents) {
+  const MotionRows& drive = recording.drive;
   const std::vector<MotionKind> kinds = motion_kinds(drive);
   double heading = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
@@ -88,10 +88,10 @@ int driven_sectors(const Contents& contents) {
                     [&](double path) { return path > kSectorShare * contents.path; }));
 }
 
-void add_lacks_of_sensors(const std::vector<Recording>& recordings, bool positions, bool truth,
-                          std::vector<DataLack>& lacks) {
+void add_lacks_of_sensors(const std::vector<DrivenRecording>& recordings, bool positions,
+                          bool truth, std::vector<DataLack>& lacks) {
   const bool headings =
-      std::any_of(recordings.begin(), recordings.end(), [](const Recording& recording) {
+      std::any_of(recordings.begin(), recordings.end(), [](const DrivenRecording& recording) {
         return recording.drive.has_compass() || recording.drive.has_gyro();
       });
   if (!positions) lacks.push_back({Lack::positions});
@@ -118,7 +118,7 @@ void add_lacks_of_drives(const Contents& contents, std::vector<DataLack>& lacks)
   if (contents.standing < kRests * contents.time) lacks.push_back({Lack::rests});
 }
 
-void add_lacks_of_covariates(const std::vector<Recording>& recordings,
+void add_lacks_of_covariates(const std::vector<DrivenRecording>& recordings,
                              std::vector<DataLack>& lacks) {
   if (recordings.size() > 1) return;
   for (const Covariate& covariate : recordings.front().drive.covariates) {
@@ -133,13 +133,13 @@ void add_lacks_of_covariates(const std::vector<Recording>& recordings,
 
 }  // namespace
 
-std::vector<DataLack> lacks_of(const std::vector<Recording>& recordings, const Robot& robot,
+std::vector<DataLack> lacks_of(const std::vector<DrivenRecording>& recordings, const Robot& robot,
                                const FitOptions& options) {
   Contents contents;
   bool survey = false;
   bool truth = false;
   bool fixes = false;
-  for (const Recording& recording : recordings) {
+  for (const DrivenRecording& recording : recordings) {
     add(recording, robot, contents);
     survey = survey || (options.use_survey && !recording.survey.empty());
     truth = truth || (options.use_truth && !recording.truth.empty());

@@ -11,7 +11,7 @@
 namespace trussmap {
 
 /// The gravest first.
-[[nodiscard]] std::vector<DataLack> lacks_of(const std::vector<Recording>& recordings,
+[[nodiscard]] std::vector<DataLack> lacks_of(const std::vector<DrivenRecording>& recordings,
                                              const Robot& robot, const FitOptions& options);
 
 }  // namespace trussmap

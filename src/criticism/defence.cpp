@@ -228,8 +228,8 @@ class Defence {
 
 }  // namespace
 
-Defended defended_against_noise(const std::vector<Recording>& recordings, const FitWithNoise& found,
-                                const std::optional<ModelFit>& with,
+Defended defended_against_noise(const std::vector<DrivenRecording>& recordings,
+                                const FitWithNoise& found, const std::optional<ModelFit>& with,
                                 const std::vector<Effect>& effects, const DefenceOptions& options) {
   Defended result;
   if (!with) {  // nobody knows then

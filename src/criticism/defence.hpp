@@ -37,7 +37,7 @@ struct DefenceOptions {
   bool as_stated = false;  ///< the errors are as large as stated
 };
 /// `with`: fitted with the effects (if_fitted_with, refits.hpp). Throws as refit does.
-[[nodiscard]] Defended defended_against_noise(const std::vector<Recording>& recordings,
+[[nodiscard]] Defended defended_against_noise(const std::vector<DrivenRecording>& recordings,
                                               const FitWithNoise& found,
                                               const std::optional<ModelFit>& with,
                                               const std::vector<Effect>& effects,

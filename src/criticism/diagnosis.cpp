@@ -12,8 +12,8 @@
 #include "criticism/remaining_errors.hpp"
 #include "criticism/trends.hpp"
 #include "criticism/verdict.hpp"
+#include "drive/slow_covariates.hpp"
 #include "linalg/dense.hpp"
-#include "recording/slow_covariates.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/held_out.hpp"
 
@@ -35,7 +35,7 @@ constexpr double kExplains = 1e-6;     // p, below which an adjustment warns of 
 /// Reports what a search has found.
 class Diagnostician {
  public:
-  Diagnostician(const std::vector<Recording>& recordings, const ModelFit& fit,
+  Diagnostician(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                 const DiagnoseOptions& options, const KnownLegs& known)
       : recordings_(recordings),
         fit_(fit),
@@ -266,7 +266,7 @@ class Diagnostician {
     }
   }
 
-  const std::vector<Recording>& recordings_;
+  const std::vector<DrivenRecording>& recordings_;
   const ModelFit& fit_;
   const FitState& state_;
   const DiagnoseOptions& options_;
@@ -303,7 +303,7 @@ void tell_of_left_out(Diagnosis& diagnosis, std::size_t still) {
 }
 
 /// About a fit that may be believed.
-DiagnosisRun diagnosis_about(const std::vector<Recording>& recordings, const ModelFit& fit,
+DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                              const Noise& stated, const DiagnoseOptions& options,
                              const KnownLegs& known) {
   auto under = std::make_shared<const FitWithNoise>(
@@ -355,7 +355,7 @@ DiagnosisRun diagnosis_about(const std::vector<Recording>& recordings, const Mod
 }
 
 /// The constants come first; what else is missing, and the noise, are judged beside them.
-DiagnosisRun diagnosis_beside(const std::vector<Recording>& recordings, const ModelFit& fit,
+DiagnosisRun diagnosis_beside(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                               GrossConstants constants, const Noise& stated,
                               const DiagnoseOptions& options) {
   DiagnosisRun run = diagnosis_about(recordings, constants.fit, stated, options, {});
@@ -396,7 +396,7 @@ DiagnosisRun diagnosis_beside(const std::vector<Recording>& recordings, const Mo
 
 }  // namespace
 
-DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings, const ModelFit& fit,
+DiagnosisRun run_diagnosis(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                            const Noise& stated, const DiagnoseOptions& options,
                            const KnownLegs& known) {
   if (std::optional<GrossConstants> gross = gross_constants(recordings, fit)) {
@@ -405,12 +405,12 @@ DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings, const Model
   return diagnosis_about(recordings, fit, stated, options, known);
 }
 
-Diagnosis diagnose(const std::vector<Recording>& recordings, const ModelFit& fit,
+Diagnosis diagnose(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                    const DiagnoseOptions& options) {
   return run_diagnosis(recordings, fit, fit.model.noise, options).result;
 }
 
-Diagnosis diagnose(const std::vector<Recording>& recordings, const Model& model,
+Diagnosis diagnose(const std::vector<DrivenRecording>& recordings, const Model& model,
                    const DiagnoseOptions& options) {
   return diagnose(recordings, fit_model(recordings, model, options.fit), options);
 }

@@ -29,7 +29,7 @@ struct KnownLegs {
 };
 
 /// `stated`: the noise that the user's model has, which the fit's may differ from by now.
-[[nodiscard]] DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings,
+[[nodiscard]] DiagnosisRun run_diagnosis(const std::vector<DrivenRecording>& recordings,
                                          const ModelFit& fit, const Noise& stated,
                                          const DiagnoseOptions& options,
                                          const KnownLegs& known = {});

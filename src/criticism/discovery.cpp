@@ -88,7 +88,8 @@ std::vector<LookAlike> rivals_of(const std::vector<Trial>& trials, std::size_t t
   return rivals;
 }
 
-double arrival_of(Trial& trial, const std::vector<Recording>& recordings, const LegOptions& legs) {
+double arrival_of(Trial& trial, const std::vector<DrivenRecording>& recordings,
+                  const LegOptions& legs) {
   if (!trial.held_out) {
     try {
       trial.legs = std::make_shared<const HeldOutLegs>(recordings, trial.fit, legs);
@@ -102,8 +103,8 @@ double arrival_of(Trial& trial, const std::vector<Recording>& recordings, const 
 }
 
 /// Than before, of the held-out legs, and beyond what chance makes of so few.
-bool predicts_worse(const HeldOut& before, Trial& trial, const std::vector<Recording>& recordings,
-                    const LegOptions& legs) {
+bool predicts_worse(const HeldOut& before, Trial& trial,
+                    const std::vector<DrivenRecording>& recordings, const LegOptions& legs) {
   if (!(before.arrival_rms > 0.0)) return false;
   const double arrival = arrival_of(trial, recordings, legs);
   if (arrival <= kNoWorse * before.arrival_rms) return false;
@@ -118,7 +119,7 @@ bool reckons_worse(const HorizonChange& change, const Finding& with) {
 }
 
 /// chi^2 decides where it can, else held-out legs, else the order of the diagnosis.
-std::size_t best_of(std::vector<Trial>& trials, const std::vector<Recording>& recordings,
+std::size_t best_of(std::vector<Trial>& trials, const std::vector<DrivenRecording>& recordings,
                     const LegOptions& legs) {
   const auto cost = [](const Trial& one) {
     return chi2_of_all(one.fit) - 2.0 * one.candidate.log_prior +
@@ -141,7 +142,7 @@ std::size_t best_of(std::vector<Trial>& trials, const std::vector<Recording>& re
 /// Adds what is found, one effect after the other.
 class Discoverer {
  public:
-  Discoverer(const std::vector<Recording>& recordings, const Model& model,
+  Discoverer(const std::vector<DrivenRecording>& recordings, const Model& model,
              const DiscoverOptions& options)
       : recordings_(recordings), options_(options) {
     given_ = model.effects.size();
@@ -386,7 +387,7 @@ class Discoverer {
     }
   }
 
-  const std::vector<Recording>& recordings_;
+  const std::vector<DrivenRecording>& recordings_;
   const DiscoverOptions& options_;
   std::size_t given_ = 0;
   Noise stated_;
@@ -400,7 +401,7 @@ class Discoverer {
 
 }  // namespace
 
-Discovery discover(const std::vector<Recording>& recordings, const Model& model,
+Discovery discover(const std::vector<DrivenRecording>& recordings, const Model& model,
                    const DiscoverOptions& options) {
   return Discoverer(recordings, model, options).run();
 }

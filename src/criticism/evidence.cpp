@@ -5,10 +5,10 @@
 #include "criticism/comparison.hpp"
 #include "criticism/effect_evidence.hpp"
 #include "criticism/response.hpp"
+#include "drive/slow_covariates.hpp"
 #include "effects/place.hpp"
 #include "effects/place_patterns.hpp"
 #include "fit/fit_state.hpp"
-#include "recording/slow_covariates.hpp"
 #include "trussmap/error.hpp"
 #include "validation/dead_reckoned_horizons.hpp"
 
@@ -39,7 +39,7 @@ std::vector<ReckonedError> reckoned_errors(const FitState& fit) {
   return reckoned;
 }
 
-ModelEvidence model_evidence(const std::vector<Recording>& recordings, const ModelFit& fit,
+ModelEvidence model_evidence(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                              const ScoreTest& tests, const CompareOptions& options,
                              const std::optional<std::string>& known_missing = {}) {
   return {compare(recordings, fit, options, tests, {known_missing, {}}), fitted_map(fit),
@@ -168,7 +168,8 @@ std::vector<EffectEvidence> effect_evidence(const FitState& without, const Model
 
 /// The model with what is missing added and fitted; with the first alone where not all can be.
 std::optional<ModelFit> fit_with(const std::vector<const Finding*>& missing,
-                                 const std::vector<Recording>& recordings, const ModelFit& fit) {
+                                 const std::vector<DrivenRecording>& recordings,
+                                 const ModelFit& fit) {
   for (std::size_t count = missing.size(); count > 0; count = count > 1 ? 1 : 0) {
     Model model = fit.model;
     for (std::size_t k = 0; k < count; ++k) model.effects.push_back(missing[k]->effect);
@@ -215,7 +216,7 @@ std::vector<Seen> added_by(const Discovery& discovery) {
 
 /// The models between the one given and the one found, fitted anew. Each lacks an effect: that of
 /// the next step.
-std::vector<ModelEvidence> models_between(const std::vector<Recording>& recordings,
+std::vector<ModelEvidence> models_between(const std::vector<DrivenRecording>& recordings,
                                           const Discovery& discovery,
                                           const CompareOptions& options) {
   std::vector<ModelEvidence> models;
@@ -240,7 +241,7 @@ ComparisonEvidence evidence_of(const ModelFit& fit, const Comparison& comparison
           trend_evidence(comparison, *fit.state, ScoreTest(*fit.state))};
 }
 
-FitEvidence evidence_of(const std::vector<Recording>& recordings, const EffectGain& gain,
+FitEvidence evidence_of(const std::vector<DrivenRecording>& recordings, const EffectGain& gain,
                         const CompareOptions& options) {
   FitEvidence evidence;
   evidence.without =
@@ -252,7 +253,7 @@ FitEvidence evidence_of(const std::vector<Recording>& recordings, const EffectGa
   return evidence;
 }
 
-DiagnosisEvidence evidence_of(const std::vector<Recording>& recordings, const ModelFit& given,
+DiagnosisEvidence evidence_of(const std::vector<DrivenRecording>& recordings, const ModelFit& given,
                               const Diagnosis& diagnosis, const DiagnoseOptions& options) {
   const CompareOptions compared = compare_options(options);
   const ModelFit& fit = diagnosis.under ? diagnosis.under->fit : given;
@@ -274,8 +275,8 @@ DiagnosisEvidence evidence_of(const std::vector<Recording>& recordings, const Mo
   return evidence;
 }
 
-DiscoveryEvidence evidence_of(const std::vector<Recording>& recordings, const Discovery& discovery,
-                              const DiagnoseOptions& options) {
+DiscoveryEvidence evidence_of(const std::vector<DrivenRecording>& recordings,
+                              const Discovery& discovery, const DiagnoseOptions& options) {
   const CompareOptions compared = compare_options(options);
   const ScoreTest given(*discovery.given.state);
   const ScoreTest found(*discovery.found.state);

@@ -46,7 +46,8 @@ bool is_scale(Channel channel) {
 }
 
 /// Those that the recordings can have, and the model lacks; without coefficients.
-std::vector<Effect> constants_for(const std::vector<Recording>& recordings, const ModelFit& given) {
+std::vector<Effect> constants_for(const std::vector<DrivenRecording>& recordings,
+                                  const ModelFit& given) {
   const FitState& fit = *given.state;
   const bool scale =
       measures_distance(recordings, fitter_options(given.options).problem, given.model.noise);
@@ -93,7 +94,7 @@ std::optional<Result> if_possible(const std::function<Result()>& fit) {
 }
 
 /// From a start of its own.
-std::optional<ModelFit> fitted_afresh(const std::vector<Recording>& recordings,
+std::optional<ModelFit> fitted_afresh(const std::vector<DrivenRecording>& recordings,
                                       const ModelFit& given, const std::vector<Effect>& constants) {
   Model model = given.model;
   model.effects.insert(model.effects.end(), constants.begin(), constants.end());
@@ -126,9 +127,9 @@ DriveFactors factors_of(const Model& calibrated) {
 
 /// The constants as a calibration of the drive has them, where it leads anywhere, as a start;
 /// nothing where none of them is gross.
-std::optional<std::vector<Effect>> start_of_constants(const std::vector<Recording>& recordings,
-                                                      const ModelFit& given,
-                                                      std::vector<Effect> constants) {
+std::optional<std::vector<Effect>> start_of_constants(
+    const std::vector<DrivenRecording>& recordings, const ModelFit& given,
+    std::vector<Effect> constants) {
   WheelCalibrationOptions options;
   options.problem = fitter_options(given.options).problem;
   options.noise = false;
@@ -150,8 +151,8 @@ std::optional<std::vector<Effect>> start_of_constants(const std::vector<Recordin
 }
 
 /// All of them at once.
-std::optional<ModelFit> with_all(const std::vector<Recording>& recordings, const ModelFit& given,
-                                 const std::vector<Effect>& constants) {
+std::optional<ModelFit> with_all(const std::vector<DrivenRecording>& recordings,
+                                 const ModelFit& given, const std::vector<Effect>& constants) {
   std::optional<ModelFit> best =
       if_possible<ModelFit>([&] { return refit_with(recordings, given, constants); });
   if (!is_far_off(best)) return best;
@@ -162,8 +163,8 @@ std::optional<ModelFit> with_all(const std::vector<Recording>& recordings, const
 }
 
 /// The same fit with other effects from `first` on, their coefficients as found.
-std::optional<ModelFit> with_others(const std::vector<Recording>& recordings, const ModelFit& fit,
-                                    std::vector<Effect> effects) {
+std::optional<ModelFit> with_others(const std::vector<DrivenRecording>& recordings,
+                                    const ModelFit& fit, std::vector<Effect> effects) {
   Model model = fit.model;
   model.effects = std::move(effects);
   return if_possible<ModelFit>([&] { return refit(recordings, model, fit); });
@@ -177,7 +178,7 @@ double noise_of(const ModelFit& fit) {
   return std::max(1.0, fit.chi2 / std::max(1, fit.dof));
 }
 
-std::optional<ModelFit> without(const std::vector<Recording>& recordings, const ModelFit& fit,
+std::optional<ModelFit> without(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                                 std::size_t place) {
   std::vector<Effect> effects = fit.model.effects;
   effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(place));
@@ -190,7 +191,7 @@ double strength_of(const ModelFit& fit, std::size_t place) {
 }
 
 /// Without those that are weak by their standard errors, the weakest first.
-std::optional<ModelFit> strong_ones(const std::vector<Recording>& recordings, ModelFit fit,
+std::optional<ModelFit> strong_ones(const std::vector<DrivenRecording>& recordings, ModelFit fit,
                                     std::size_t first) {
   while (fit.model.effects.size() > first) {
     std::size_t weakest = first;
@@ -211,7 +212,8 @@ bool is_gross(const Effect& one) {
 
 /// Without those that a fit without them does hardly worse than: a standard error is of the plane
 /// about the fit. Without what is gross a fit would be lost.
-ModelFit sure_ones(const std::vector<Recording>& recordings, ModelFit fit, std::size_t first) {
+ModelFit sure_ones(const std::vector<DrivenRecording>& recordings, ModelFit fit,
+                   std::size_t first) {
   for (std::size_t k = fit.model.effects.size(); k-- > first;) {
     if (is_gross(fit.model.effects[k])) continue;
     std::optional<ModelFit> next = without(recordings, fit, k);
@@ -222,7 +224,7 @@ ModelFit sure_ones(const std::vector<Recording>& recordings, ModelFit fit, std::
 }
 
 /// Larger wheels make all that is driven larger alike: one constant instead of two or three.
-ModelFit with_wheel_scale(const std::vector<Recording>& recordings, const ModelFit& fit,
+ModelFit with_wheel_scale(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                           std::size_t first) {
   const CatalogueRecord* scale = find_record("wheel scale");
   std::vector<Effect> effects(fit.model.effects.begin(),
@@ -244,7 +246,7 @@ ModelFit with_wheel_scale(const std::vector<Recording>& recordings, const ModelF
   return *one;
 }
 
-ModelFit surest_first(const std::vector<Recording>& recordings, const ModelFit& fit,
+ModelFit surest_first(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                       std::size_t first) {
   std::vector<std::pair<double, Effect>> rated;
   for (std::size_t k = first; k < fit.model.effects.size(); ++k) {
@@ -274,7 +276,7 @@ double per_dof(const ModelFit& fit) {
 
 }  // namespace
 
-std::optional<GrossConstants> gross_constants(const std::vector<Recording>& recordings,
+std::optional<GrossConstants> gross_constants(const std::vector<DrivenRecording>& recordings,
                                               const ModelFit& given) {
   if (given.p_value > kMisfit) return std::nullopt;
   const std::vector<Effect> constants = constants_for(recordings, given);
@@ -310,7 +312,7 @@ std::vector<LookAlike> look_alikes_at(const ModelFit& fit, const ScoreTest& at_f
 }
 
 /// `most`: the chi^2 that all constants together take away.
-Finding finding_at(const std::vector<Recording>& recordings, const ModelFit& fit,
+Finding finding_at(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                    const ScoreTest& at_fit, std::size_t place, double most) {
   const Effect& effect = fit.model.effects[place];
   Finding result;
@@ -336,8 +338,9 @@ Finding finding_at(const std::vector<Recording>& recordings, const ModelFit& fit
 
 }  // namespace
 
-std::vector<Finding> findings_of(const std::vector<Recording>& recordings, const ModelFit& given,
-                                 const GrossConstants& constants, const LegOptions& legs) {
+std::vector<Finding> findings_of(const std::vector<DrivenRecording>& recordings,
+                                 const ModelFit& given, const GrossConstants& constants,
+                                 const LegOptions& legs) {
   const ModelFit& fit = constants.fit;
   HeldOutMetrics predicted;
   try {

@@ -32,11 +32,11 @@ struct GrossConstants {
 
 /// Nothing where there are none. `given`: the model's fit of these recordings under stated noise.
 [[nodiscard]] std::optional<GrossConstants> gross_constants(
-    const std::vector<Recording>& recordings, const ModelFit& given);
+    const std::vector<DrivenRecording>& recordings, const ModelFit& given);
 
 /// Each as a finding that is missing, with its fitted size and what else could leave its trace.
 /// `given`: the fit without them, under the same noise.
-[[nodiscard]] std::vector<Finding> findings_of(const std::vector<Recording>& recordings,
+[[nodiscard]] std::vector<Finding> findings_of(const std::vector<DrivenRecording>& recordings,
                                                const ModelFit& given,
                                                const GrossConstants& constants,
                                                const LegOptions& legs);

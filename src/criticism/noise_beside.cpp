@@ -64,7 +64,7 @@ std::vector<Effect> suspects(const FitState& fit) {
 
 /// The fit with its suspects as effects: large ones bend the rows, and what a plane leaves of them
 /// would look like noise. Those that cannot be fitted together are left out from the last on.
-ModelFit with_suspects(const std::vector<Recording>& recordings, const ModelFit& fit) {
+ModelFit with_suspects(const std::vector<DrivenRecording>& recordings, const ModelFit& fit) {
   std::vector<Effect> found = suspects(*fit.state);
   for (; !found.empty(); found.pop_back()) {
     if (std::optional<ModelFit> with = if_fitted_with(recordings, fit, found)) {
@@ -76,7 +76,7 @@ ModelFit with_suspects(const std::vector<Recording>& recordings, const ModelFit&
 
 }  // namespace
 
-FitWithNoise with_noise_beside(const std::vector<Recording>& recordings, const ModelFit& fit,
+FitWithNoise with_noise_beside(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                                const Noise& stated) {
   constexpr int kMostRounds = 2;
   constexpr double kStillBetter = 2.0;  // of -2 log R
@@ -103,7 +103,7 @@ FitWithNoise with_noise_beside(const std::vector<Recording>& recordings, const M
   return result;
 }
 
-std::optional<FitWithNoise> with_noise_beside_found(const std::vector<Recording>& recordings,
+std::optional<FitWithNoise> with_noise_beside_found(const std::vector<DrivenRecording>& recordings,
                                                     const FitWithNoise& under,
                                                     const std::optional<ModelFit>& with,
                                                     const std::vector<Effect>& found,

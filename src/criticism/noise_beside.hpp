@@ -23,14 +23,14 @@
 namespace trussmap {
 
 /// `stated`: the noise that sizes are kept at where they can be. Throws as refit does.
-[[nodiscard]] FitWithNoise with_noise_beside(const std::vector<Recording>& recordings,
+[[nodiscard]] FitWithNoise with_noise_beside(const std::vector<DrivenRecording>& recordings,
                                              const ModelFit& fit, const Noise& stated);
 
 /// Where some of the effects found act at a place or beyond a threshold: the noise beside all of
 /// them, which are fitted in `with` (if_fitted_with, refits.hpp). `under`: as found beside the
 /// suspects. Absent: it is the same, or cannot be told.
 [[nodiscard]] std::optional<FitWithNoise> with_noise_beside_found(
-    const std::vector<Recording>& recordings, const FitWithNoise& under,
+    const std::vector<DrivenRecording>& recordings, const FitWithNoise& under,
     const std::optional<ModelFit>& with, const std::vector<Effect>& found, const Noise& stated);
 
 }  // namespace trussmap

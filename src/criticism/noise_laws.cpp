@@ -34,7 +34,7 @@ std::vector<DriveLaw> drive_laws(const FitState& fit, const ShapeContext& contex
   std::vector<DriveLaw> laws;
   const auto add = [&](const char* name, const char* unit, double margin, const Noise& noise) {
     laws.push_back({name, unit, margin, [&fit, noise](std::size_t session, const SegmentRow& row) {
-                      const Drive& drive = fit.recordings[session].drive;
+                      const MotionRows& drive = fit.recordings[session].drive;
                       return row_covariance(drive, row.row, row.part, row.duration, fit.model.robot,
                                             noise);
                     }});

@@ -11,9 +11,9 @@
 namespace trussmap {
 namespace {
 
-std::size_t sightings_of(const std::vector<Recording>& recordings) {
+std::size_t sightings_of(const std::vector<DrivenRecording>& recordings) {
   std::size_t sum = 0;
-  for (const Recording& one : recordings) sum += one.sightings.size();
+  for (const DrivenRecording& one : recordings) sum += one.sightings.size();
   return sum;
 }
 
@@ -21,7 +21,7 @@ std::size_t sightings_of(const std::vector<Recording>& recordings) {
 void leave_contradicting_points_out(PreparedRecordings& prepared, const ModelFit& without_survey) {
   LandmarkPositions positions;
   for (const FittedLandmark& one : without_survey.landmarks) positions[one.name] = one.position;
-  for (Recording& recording : prepared.recordings) {
+  for (DrivenRecording& recording : prepared.recordings) {
     const SurveyComparison comparison = compare_with_survey(positions, recording.survey);
     for (const std::string& name : comparison.contradicting) {
       std::erase_if(recording.survey,
@@ -41,10 +41,9 @@ FitOptions gated_fit(double gate) {
   return options;
 }
 
-PreparedRecordings prepare_recordings(std::vector<Recording> recordings, const Model& model,
+PreparedRecordings prepare_recordings(std::vector<DrivenRecording> recordings, const Model& model,
                                       const FitOptions& fit, std::optional<double> every) {
   PreparedRecordings prepared;
-  for (Recording& one : recordings) one = with_wheels(std::move(one), model.robot);
   prepared.recordings = std::move(recordings);
   double lasts = every.value_or(0.0);
   if (!every && has_dense_frames(prepared.recordings)) {
@@ -55,7 +54,7 @@ PreparedRecordings prepare_recordings(std::vector<Recording> recordings, const M
     if (fit.use_survey) leave_contradicting_points_out(prepared, without_survey);
   }
   if (!(lasts > 0.0)) return prepared;
-  std::vector<Recording> thinned = thinned_frames(prepared.recordings, lasts);
+  std::vector<DrivenRecording> thinned = thinned_frames(prepared.recordings, lasts);
   const std::size_t all = sightings_of(prepared.recordings);
   const std::size_t used = sightings_of(thinned);
   if (used == all) return prepared;

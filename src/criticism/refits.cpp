@@ -7,14 +7,14 @@
 
 namespace trussmap {
 
-ModelFit refit_with(const std::vector<Recording>& recordings, const ModelFit& fit,
+ModelFit refit_with(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                     const std::vector<Effect>& effects) {
   Model model = fit.model;
   model.effects.insert(model.effects.end(), effects.begin(), effects.end());
   return refit(recordings, model, fit);
 }
 
-std::optional<ModelFit> if_fitted_with(const std::vector<Recording>& recordings,
+std::optional<ModelFit> if_fitted_with(const std::vector<DrivenRecording>& recordings,
                                        const ModelFit& fit, const std::vector<Effect>& effects) {
   try {
     return refit_with(recordings, fit, effects);
@@ -23,7 +23,7 @@ std::optional<ModelFit> if_fitted_with(const std::vector<Recording>& recordings,
   }
 }
 
-ModelFit refit_under(const std::vector<Recording>& recordings, const ModelFit& fit,
+ModelFit refit_under(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                      const Noise& noise) {
   Model model = fit.model;
   model.noise = noise;

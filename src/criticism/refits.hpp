@@ -12,16 +12,16 @@
 namespace trussmap {
 
 /// With these effects in the model, after its own.
-[[nodiscard]] ModelFit refit_with(const std::vector<Recording>& recordings, const ModelFit& fit,
-                                  const std::vector<Effect>& effects);
+[[nodiscard]] ModelFit refit_with(const std::vector<DrivenRecording>& recordings,
+                                  const ModelFit& fit, const std::vector<Effect>& effects);
 
 /// Nothing where they cannot be fitted together.
-[[nodiscard]] std::optional<ModelFit> if_fitted_with(const std::vector<Recording>& recordings,
+[[nodiscard]] std::optional<ModelFit> if_fitted_with(const std::vector<DrivenRecording>& recordings,
                                                      const ModelFit& fit,
                                                      const std::vector<Effect>& effects);
 
 /// With this noise.
-[[nodiscard]] ModelFit refit_under(const std::vector<Recording>& recordings, const ModelFit& fit,
-                                   const Noise& noise);
+[[nodiscard]] ModelFit refit_under(const std::vector<DrivenRecording>& recordings,
+                                   const ModelFit& fit, const Noise& noise);
 
 }  // namespace trussmap

@@ -32,16 +32,17 @@ std::vector<NoiseTest> laws_of(const Asked& asked) {
   return test_noise_laws(*asked.fit.state, tests, asked.nuisance(tests));
 }
 
-Asked with_noise_as(const std::vector<Recording>& recordings, const Noise& stated, Asked asked) {
+Asked with_noise_as(const std::vector<DrivenRecording>& recordings, const Noise& stated,
+                    Asked asked) {
   asked.fit = refit_under(recordings, asked.fit, stated);
   return asked;
 }
 
 }  // namespace
 
-RemainingErrors remaining_errors(const std::vector<Recording>& recordings, const ModelFit& fit,
-                                 const std::optional<ModelFit>& with, const Noise& stated,
-                                 const std::vector<Effect>& missing) {
+RemainingErrors remaining_errors(const std::vector<DrivenRecording>& recordings,
+                                 const ModelFit& fit, const std::optional<ModelFit>& with,
+                                 const Noise& stated, const std::vector<Effect>& missing) {
   RemainingErrors result;
   const Asked asked = with ? Asked{*with, {}} : Asked{fit, missing};
   result.fitted = asked.beside.empty();
@@ -58,8 +59,8 @@ RemainingErrors remaining_errors(const std::vector<Recording>& recordings, const
   return result;
 }
 
-std::vector<NoiseTest> noise_beyond(const std::vector<Recording>& recordings, const ModelFit& fit,
-                                    const Noise& stated) {
+std::vector<NoiseTest> noise_beyond(const std::vector<DrivenRecording>& recordings,
+                                    const ModelFit& fit, const Noise& stated) {
   return laws_of(with_noise_as(recordings, stated, {fit, {}}));
 }
 

@@ -26,14 +26,14 @@ struct RemainingErrors {
 /// (if_fitted_with, refits.hpp); `stated`: the noise that the user's model has. Where they cannot
 /// be fitted together, all is asked of the fit as it is, less what their columns explain. Throws as
 /// refit does.
-[[nodiscard]] RemainingErrors remaining_errors(const std::vector<Recording>& recordings,
+[[nodiscard]] RemainingErrors remaining_errors(const std::vector<DrivenRecording>& recordings,
                                                const ModelFit& fit,
                                                const std::optional<ModelFit>& with,
                                                const Noise& stated,
                                                const std::vector<Effect>& missing);
 
 /// The laws of noise alone, of a fit that lacks nothing.
-[[nodiscard]] std::vector<NoiseTest> noise_beyond(const std::vector<Recording>& recordings,
+[[nodiscard]] std::vector<NoiseTest> noise_beyond(const std::vector<DrivenRecording>& recordings,
                                                   const ModelFit& fit, const Noise& stated);
 
 }  // namespace trussmap

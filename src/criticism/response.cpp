@@ -108,7 +108,7 @@ EffectRange ShapeRanges::of(const Effect& effect) {
   std::vector<const Values*> shapes;
   for (const Shape& shape : effect.shape) shapes.push_back(&values(shape));
   for (std::size_t s = 0; s < sessions; ++s) {
-    const Drive& drive = context_.recordings()[s].drive;
+    const MotionRows& drive = context_.recordings()[s].drive;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       if (drive.rests(row)) continue;
       double g = 0.0;

@@ -32,7 +32,7 @@ std::vector<double> values_of(const Shape& formula, const FitState& fit, const S
   const auto all = tests.context().values(formula, ShapeContext::Instant::middle);
   std::vector<double> values;
   for (std::size_t s = 0; s < fit.recordings.size(); ++s) {
-    const Drive& drive = fit.recordings[s].drive;
+    const MotionRows& drive = fit.recordings[s].drive;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       if (drive.rests(row)) continue;
       values.push_back(formula == "heading" ? in_one_turn(all[s][row]) : all[s][row]);

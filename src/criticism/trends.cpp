@@ -29,7 +29,7 @@ struct Variable {
 bool varies(const FitState& fit, const std::string& covariate) {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;
-  for (const Recording& recording : fit.recordings) {
+  for (const DrivenRecording& recording : fit.recordings) {
     for (const Covariate& one : recording.drive.covariates) {
       if (one.name != covariate) continue;
       for (const double value : one.values) {
@@ -73,8 +73,8 @@ Variable place_variable(const FitState& fit) {
 double faintest_turn(const FitState& fit) {
   const Noise& noise = fit.model.noise;
   std::vector<double> deviations;
-  for (const Recording& recording : fit.recordings) {
-    const Drive& drive = recording.drive;
+  for (const DrivenRecording& recording : fit.recordings) {
+    const MotionRows& drive = recording.drive;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       const double duration = drive.duration(row);
       const Robot& robot = fit.model.robot;

@@ -40,19 +40,20 @@ struct BodyMotion {
 }
 
 /// Of a whole row, by the wheels or by wheels and gyro together.
-[[nodiscard]] inline BodyMotion body_motion(const Drive& drive, std::size_t row,
+[[nodiscard]] inline BodyMotion body_motion(const MotionRows& drive, std::size_t row,
                                             const Robot& robot) {
   return body_motion({drive.left[row], drive.right[row]}, robot, drive.slip(row));
 }
 
 /// Two wheels travel so much more in the row.
-inline void add_travel(Drive& drive, std::size_t row, const WheelTravel& more) {
+inline void add_travel(MotionRows& drive, std::size_t row, const WheelTravel& more) {
   drive.left[row] += more.left;
   drive.right[row] += more.right;
 }
 
 /// The body moves so much more in the row; to the side only where its drive can.
-inline void add_motion(Drive& drive, std::size_t row, const BodyMotion& more, const Robot& robot) {
+inline void add_motion(MotionRows& drive, std::size_t row, const BodyMotion& more,
+                       const Robot& robot) {
   add_travel(drive, row, {more.forward, more.forward});
   add_travel(drive, row, wheel_travel({0.0, 0.0, more.turn}, robot));
   if (!drive.sideways.empty()) drive.sideways[row] += more.sideways;

@@ -31,7 +31,7 @@ struct RowMotion {
     return body_motion({more_left, more_right}, wheelbase);
   }
   /// Other wheels than two, of this drive.
-  void set_wheels(const Drive& drive, std::size_t number) {
+  void set_wheels(const MotionRows& drive, std::size_t number) {
     wheels = drive.wheels.empty() ? nullptr : &drive.wheels;
     row = number;
   }
@@ -59,7 +59,7 @@ struct RowMotion {
 }
 
 /// A row as its wheels show it, or wheels and gyro together.
-[[nodiscard]] inline RowMotion shown_motion(const Drive& drive, std::size_t row,
+[[nodiscard]] inline RowMotion shown_motion(const MotionRows& drive, std::size_t row,
                                             const Robot& robot) {
   RowMotion shown =
       row_motion({drive.left[row], drive.right[row]}, drive.slip(row), drive.duration(row), robot);
@@ -79,7 +79,8 @@ struct RowMotion {
   return row;
 }
 /// The same of a drive's row, whether or not the gyro was taken in.
-[[nodiscard]] inline RowMotion row_motion(const Drive& drive, std::size_t row, const Robot& robot) {
+[[nodiscard]] inline RowMotion row_motion(const MotionRows& drive, std::size_t row,
+                                          const Robot& robot) {
   if (drive.gyro.empty()) return shown_motion(drive, row, robot);
   RowMotion motion = row_motion(drive.gyro[row], drive.duration(row), robot);
   motion.set_wheels(drive, row);

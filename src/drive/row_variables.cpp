@@ -22,7 +22,7 @@ struct Span {
   std::size_t end;
 };
 
-std::vector<Span> windows(const Drive& drive, const std::vector<MotionKind>& kinds) {
+std::vector<Span> windows(const MotionRows& drive, const std::vector<MotionKind>& kinds) {
   std::vector<Span> spans(drive.rows());
   const auto middle = [&drive](std::size_t row) {
     return drive.t[row] - 0.5 * drive.duration(row);
@@ -43,7 +43,7 @@ std::vector<Span> windows(const Drive& drive, const std::vector<MotionKind>& kin
 }
 
 /// Mean rate over each window: sums of `amount` over sums of time.
-std::vector<double> smoothed_rate(const Drive& drive, const std::vector<Span>& spans,
+std::vector<double> smoothed_rate(const MotionRows& drive, const std::vector<Span>& spans,
                                   const std::vector<double>& amount) {
   std::vector<double> sums(drive.rows() + 1, 0.0);
   for (std::size_t row = 0; row < drive.rows(); ++row) sums[row + 1] = sums[row] + amount[row];
@@ -57,7 +57,7 @@ std::vector<double> smoothed_rate(const Drive& drive, const std::vector<Span>& s
 }
 
 /// Slope of the smoothed speed over each window, by its ends.
-std::vector<double> slopes(const Drive& drive, const std::vector<Span>& spans,
+std::vector<double> slopes(const MotionRows& drive, const std::vector<Span>& spans,
                            const std::vector<double>& values) {
   std::vector<double> result;
   result.reserve(drive.rows());
@@ -103,7 +103,7 @@ MotionKind motion_kind(double left, double right, double duration, double sidewa
   return MotionKind::driving;
 }
 
-std::vector<MotionKind> motion_kinds(const Drive& drive) {
+std::vector<MotionKind> motion_kinds(const MotionRows& drive) {
   std::vector<MotionKind> kinds;
   kinds.reserve(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
@@ -113,7 +113,7 @@ std::vector<MotionKind> motion_kinds(const Drive& drive) {
   return kinds;
 }
 
-std::size_t row_at(const Drive& drive, double t) {
+std::size_t row_at(const MotionRows& drive, double t) {
   const auto at = std::lower_bound(drive.t.begin(), drive.t.end(), t);
   return std::min(static_cast<std::size_t>(at - drive.t.begin()), drive.rows() - 1);
 }
@@ -121,7 +121,7 @@ std::size_t row_at(const Drive& drive, double t) {
 namespace {
 
 /// What is turned, by the smoothed rates: of single rows' noise the size would be a bias.
-void take_turning(const Drive& drive, const std::vector<MotionKind>& kinds,
+void take_turning(const MotionRows& drive, const std::vector<MotionKind>& kinds,
                   RowVariables& variables) {
   const std::vector<double>& speed = variables.at("speed");
   const std::vector<double>& turn_rate = variables.at("turn_rate");
@@ -137,14 +137,15 @@ void take_turning(const Drive& drive, const std::vector<MotionKind>& kinds,
   }
 }
 
-std::vector<double> wheel_travels(const Drive& drive, double (Drive::*wheel)(std::size_t) const) {
+std::vector<double> wheel_travels(const MotionRows& drive,
+                                  double (MotionRows::*wheel)(std::size_t) const) {
   std::vector<double> travels(drive.rows());
   for (std::size_t row = 0; row < travels.size(); ++row) travels[row] = (drive.*wheel)(row);
   return travels;
 }
 
 /// Everything but the pose, in the middle of each row.
-RowVariables drive_variables(const Drive& drive, const Robot& robot, int session) {
+RowVariables drive_variables(const MotionRows& drive, const Robot& robot, int session) {
   const std::size_t rows = drive.rows();
   const std::vector<MotionKind> kinds = motion_kinds(drive);
   const std::vector<Span> spans = windows(drive, kinds);
@@ -169,15 +170,15 @@ RowVariables drive_variables(const Drive& drive, const Robot& robot, int session
   variables["session"] = std::vector<double>(rows, session);
   variables["starts"] = beginnings(kinds, MotionKind::driving);
   variables["spins"] = beginnings(kinds, MotionKind::spinning);
-  variables["reverses_left"] = reversals(wheel_travels(drive, &Drive::wheel_left));
-  variables["reverses_right"] = reversals(wheel_travels(drive, &Drive::wheel_right));
+  variables["reverses_left"] = reversals(wheel_travels(drive, &MotionRows::wheel_left));
+  variables["reverses_right"] = reversals(wheel_travels(drive, &MotionRows::wheel_right));
   for (const Covariate& covariate : drive.covariates) variables[covariate.name] = covariate.values;
   return variables;
 }
 
 }  // namespace
 
-RowVariables row_variables(const Drive& drive, const Robot& robot, const Pose& start,
+RowVariables row_variables(const MotionRows& drive, const Robot& robot, const Pose& start,
                            const std::vector<Pose>& path, int session) {
   if (!drive.steered.empty()) {
     return row_variables(unsteered(drive, robot), robot, start, path, session);
@@ -197,7 +198,7 @@ RowVariables row_variables(const Drive& drive, const Robot& robot, const Pose& s
   return variables;
 }
 
-RowVariables instant_variables(const Drive& drive, const Robot& robot,
+RowVariables instant_variables(const MotionRows& drive, const Robot& robot,
                                const std::vector<double>& instants, const std::vector<Pose>& poses,
                                int session) {
   if (poses.size() != instants.size()) throw std::invalid_argument("an instant has one pose");

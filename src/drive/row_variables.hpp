@@ -43,21 +43,22 @@ enum class MotionKind { standing, spinning, driving };
 [[nodiscard]] MotionKind motion_kind(double left, double right, double duration,
                                      double sideways = 0.0);
 /// Kind of motion of each row.
-[[nodiscard]] std::vector<MotionKind> motion_kinds(const Drive& drive);
+[[nodiscard]] std::vector<MotionKind> motion_kinds(const MotionRows& drive);
 
 /// `path`: pose at the end of each row, from `start`. Throws std::invalid_argument where its length
 /// is not the drive's.
-[[nodiscard]] RowVariables row_variables(const Drive& drive, const Robot& robot, const Pose& start,
-                                         const std::vector<Pose>& path, int session);
+[[nodiscard]] RowVariables row_variables(const MotionRows& drive, const Robot& robot,
+                                         const Pose& start, const std::vector<Pose>& path,
+                                         int session);
 
 /// The same at any instants, in any order, with the pose there: what a compass reading at the end
 /// of its row, or a sighting, is made at. Rates are the mean of those of the two rows that meet at
 /// a row's end, within one kind of motion; events and covariates are those of the row.
-[[nodiscard]] RowVariables instant_variables(const Drive& drive, const Robot& robot,
+[[nodiscard]] RowVariables instant_variables(const MotionRows& drive, const Robot& robot,
                                              const std::vector<double>& instants,
                                              const std::vector<Pose>& poses, int session);
 
 /// The row that contains time t; the last one that does where two meet.
-[[nodiscard]] std::size_t row_at(const Drive& drive, double t);
+[[nodiscard]] std::size_t row_at(const MotionRows& drive, double t);
 
 }  // namespace trussmap

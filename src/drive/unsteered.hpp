@@ -14,7 +14,7 @@ namespace trussmap {
 
 /// `left` and `right` as they were, where no gyro is taken in; where one is, up to what the changed
 /// derivatives do to its weights.
-[[nodiscard]] inline Drive unsteered(Drive drive, const Robot& robot) {
+[[nodiscard]] inline MotionRows unsteered(MotionRows drive, const Robot& robot) {
   for (std::size_t row = 0; row < drive.steered.size(); ++row) {
     auto [ahead, turn] = drive.steered[row];
     if (!drive.gyro.empty()) {

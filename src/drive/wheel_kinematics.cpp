@@ -29,7 +29,7 @@ constexpr NamedValues<DriveKind, 7> kDriveNames{{
     {DriveKind::wheels, "wheels"},
 }};
 
-[[noreturn]] void refuse(const Recording& recording, const std::string& what) {
+[[noreturn]] void refuse_drive(const Observations& recording, const std::string& what) {
   throw InputError(recording.name.empty() ? "drive.csv" : recording.name + "/drive.csv", 0, what);
 }
 
@@ -74,11 +74,41 @@ const std::vector<double>& column_named(const Recording& recording, const std::s
     if (one.name == name) return one.values;
     there += (there.empty() ? "" : ", ") + one.name;
   }
-  refuse(recording, "has no column \"" + name + "\", which the model's [robot] names" +
-                        (there.empty() ? "" : ", expected one of " + there));
+  refuse_drive(recording, "has no column \"" + name + "\", which the model's [robot] names" +
+                              (there.empty() ? "" : ", expected one of " + there));
 }
 
-void take_body(Drive& drive, std::size_t row, const Eigen::Vector3d& motion, const Robot& robot) {
+/// Of a column that the robot names.
+std::vector<double> reading_of(const Recording& recording, const std::string& name) {
+  const std::vector<double>& reading = column_named(recording, name);
+  const std::vector<double>& t = recording.drive.t;
+  if (reading.size() != t.size()) {
+    throw std::invalid_argument(joined("recording \"", recording.name, "\": column ", name,
+                                       " of the drive has ", reading.size(), " rows, expected ",
+                                       t.size(), " as t has"));
+  }
+  for (std::size_t row = 0; row < reading.size(); ++row) {
+    if (is_possible_reading(reading[row])) continue;
+    refuse_drive(recording, joined("column ", name, " is ", short_text(reading[row]),
+                                   " at t = ", short_text(t[row]),
+                                   " s, expected a travel in metres or an angle in radians"));
+  }
+  return reading;
+}
+
+[[noreturn]] void refuse_without_wheels(const Recording& recording) {
+  std::string there;
+  for (const Covariate& one : recording.drive.covariates) {
+    there += (there.empty() ? "" : ", ") + one.name;
+  }
+  refuse_drive(
+      recording,
+      "has no columns left and right, expected them, or a model whose [robot] says which drive " +
+          there + " are of");
+}
+
+void take_body(MotionRows& drive, std::size_t row, const Eigen::Vector3d& motion,
+               const Robot& robot) {
   const WheelTravel travel = wheel_travel({motion[0], motion[1], motion[2]}, robot);
   drive.left[row] = travel.left;
   drive.right[row] = travel.right;
@@ -170,36 +200,21 @@ Eigen::MatrixXd wheel_matrix(const std::vector<WheelPlace>& places) {
   return M;
 }
 
-Recording with_wheels(Recording recording, const Robot& robot) {
-  Drive& drive = recording.drive;
-  if (!drive.wheels.empty()) return recording;
-  if (robot.columns.empty()) {
-    if (!drive.left.empty() || drive.rows() == 0) return recording;
-    std::string there;
-    for (const Covariate& one : drive.covariates) {
-      there += (there.empty() ? "" : ", ") + one.name;
-    }
-    refuse(
-        recording,
-        "has no columns left and right, expected them, or a model whose [robot] says which drive " +
-            there + " are of");
-  }
+DrivenRecording with_wheels(Recording recording, const Robot& robot) {
+  const Drive& read = recording.drive;
   std::vector<WheelColumn> wheels;
   for (const std::string& name : robot.columns) {
-    wheels.push_back({name, false, column_named(recording, name), {}});
-    const std::vector<double>& reading = wheels.back().reading;
-    for (std::size_t row = 0; row < reading.size(); ++row) {
-      if (is_possible_reading(reading[row])) continue;
-      refuse(recording, joined("column ", name, " is ", short_text(reading[row]),
-                               " at t = ", short_text(drive.t[row]),
-                               " s, expected a travel in metres or an "
-                               "angle in radians"));
-    }
+    wheels.push_back({name, false, reading_of(recording, name), {}});
   }
-  if (robot.drive == DriveKind::differential) {
-    drive.left = wheels[0].reading;
-    drive.right = wheels[1].reading;
-    return recording;
+  if (wheels.empty() && read.left.empty() && read.rows() > 0) refuse_without_wheels(recording);
+  const bool named = !wheels.empty();
+  DrivenRecording result{std::move(static_cast<Observations&>(recording)), {}};
+  MotionRows& drive = result.drive;
+  static_cast<DriveColumns&>(drive) = std::move(static_cast<DriveColumns&>(recording.drive));
+  if (robot.drive == DriveKind::differential || !named) {
+    drive.left = named ? std::move(wheels[0].reading) : std::move(recording.drive.left);
+    drive.right = named ? std::move(wheels[1].reading) : std::move(recording.drive.right);
+    return result;
   }
   const WheelKinematics kinematics(robot);
   kinematics.prepare(drive, drive.rows());
@@ -208,11 +223,19 @@ Recording with_wheels(Recording recording, const Robot& robot) {
   }
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     if (kinematics.move(drive, row)) continue;
-    refuse(recording, joined("a steering angle of ", short_text(drive.wheels[1].reading[row]),
-                             " rad at t = ", short_text(drive.t[row]),
-                             " s leaves the measured wheel no way ahead, expected a smaller one"));
+    refuse_drive(result,
+                 joined("a steering angle of ", short_text(drive.wheels[1].reading[row]),
+                        " rad at t = ", short_text(drive.t[row]),
+                        " s leaves the measured wheel no way ahead, expected a smaller one"));
   }
-  return recording;
+  return result;
+}
+
+std::vector<DrivenRecording> with_wheels(std::vector<Recording> recordings, const Robot& robot) {
+  std::vector<DrivenRecording> result;
+  result.reserve(recordings.size());
+  for (Recording& one : recordings) result.push_back(with_wheels(std::move(one), robot));
+  return result;
 }
 
 bool is_own_column(const Robot& robot, const std::string& name) {
@@ -229,7 +252,7 @@ WheelKinematics::WheelKinematics(const Robot& robot) : robot_(robot), steers_(ha
   if (!steers_) matrix_ = matrix_of(robot_);
 }
 
-void WheelKinematics::prepare(Drive& drive, std::size_t rows) const {
+void WheelKinematics::prepare(MotionRows& drive, std::size_t rows) const {
   drive.left.assign(rows, 0.0);
   drive.right.assign(rows, 0.0);
   drive.sideways.assign(!steers_ && !matrix_.row(1).isZero(0.0) ? rows : 0, 0.0);
@@ -240,7 +263,7 @@ void WheelKinematics::prepare(Drive& drive, std::size_t rows) const {
   }
 }
 
-bool WheelKinematics::move(Drive& drive, std::size_t row, double more) const {
+bool WheelKinematics::move(MotionRows& drive, std::size_t row, double more) const {
   if (!steers_) {
     Eigen::Vector3d motion = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < drive.wheels.size(); ++k) {

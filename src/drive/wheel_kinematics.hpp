@@ -22,12 +22,12 @@ class WheelKinematics {
   explicit WheelKinematics(const Robot& robot);
 
   /// So many rows for each of the robot's columns, in their order, all of them 0.
-  void prepare(Drive& drive, std::size_t rows) const;
+  void prepare(MotionRows& drive, std::size_t rows) const;
 
   /// From the row's readings its `left`, `right`, `sideways` and `by_reading`, the wheel steered
   /// `more` [rad] further to the left than it reads. False, and nothing done, where a steering
   /// angle leaves the measured wheel no way ahead.
-  [[nodiscard]] bool move(Drive& drive, std::size_t row, double more = 0.0) const;
+  [[nodiscard]] bool move(MotionRows& drive, std::size_t row, double more = 0.0) const;
 
  private:
   Robot robot_;

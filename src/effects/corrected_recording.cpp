@@ -17,7 +17,7 @@
 namespace trussmap {
 namespace {
 
-void free_sightings(Channel channel, const std::vector<double>& g, Recording& recording) {
+void free_sightings(Channel channel, const std::vector<double>& g, DrivenRecording& recording) {
   for (Sighting& sighting : recording.sightings) {
     if (sighting.standing() && channel != Channel::sighting_yaw) continue;
     sighting = without(channel, g[row_at(recording.drive, sighting.t)], sighting);
@@ -29,7 +29,7 @@ void free_sightings(Channel channel, const std::vector<double>& g, Recording& re
 }
 
 void apply(Channel channel, const std::vector<double>& g, const Robot& robot,
-           Recording& recording) {
+           DrivenRecording& recording) {
   // A tracker's affair, or a receiver's.
   if (channel == Channel::truth_heading || acts_on_fixes(channel)) return;
   // A drive that goes sideways has a place for what it slips.
@@ -71,7 +71,8 @@ std::vector<double> gains_of(const Effect& effect, const RowVariables& variables
   return g;
 }
 
-void free_drive(Channel channel, const std::vector<double>& g, const Robot& robot, Drive& drive) {
+void free_drive(Channel channel, const std::vector<double>& g, const Robot& robot,
+                MotionRows& drive) {
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const DrivePattern more = drive_pattern(channel, g[row], shown_motion(drive, row, robot));
     add_motion(drive, row, {more.advance, more.slip, more.turn}, robot);
@@ -87,9 +88,9 @@ void require_shapes(const Effect& effect) {
                               "of the catalogue's with its own)");
 }
 
-Recording corrected_recording(const Recording& recording, const Model& model,
-                              const RowVariables& variables, int session) {
-  Recording corrected = recording;
+DrivenRecording corrected_recording(const DrivenRecording& recording, const Model& model,
+                                    const RowVariables& variables, int session) {
+  DrivenRecording corrected = recording;
   for (const Effect& effect : model.effects) require_shapes(effect);
   corrected.drive =
       steered(std::move(corrected.drive), model.robot, model.effects, variables, session);

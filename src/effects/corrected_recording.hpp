@@ -27,12 +27,14 @@ void require_shapes(const Effect& effect);
                                            int session, std::size_t rows);
 
 /// Takes g, per row, of a recordable channel that acts on drives out of what wheels and gyro show.
-void free_drive(Channel channel, const std::vector<double>& g, const Robot& robot, Drive& drive);
+void free_drive(Channel channel, const std::vector<double>& g, const Robot& robot,
+                MotionRows& drive);
 
 /// `variables` are this recording's. Throws std::invalid_argument, naming the effect: one of the
 /// other channels, a shape that cannot be evaluated, coefficients that do not match. Effects
 /// without coefficients count as 0; per session, those of `session` are taken.
-[[nodiscard]] Recording corrected_recording(const Recording& recording, const Model& model,
-                                            const RowVariables& variables, int session);
+[[nodiscard]] DrivenRecording corrected_recording(const DrivenRecording& recording,
+                                                  const Model& model, const RowVariables& variables,
+                                                  int session);
 
 }  // namespace trussmap

@@ -15,7 +15,7 @@ namespace trussmap {
 namespace {
 
 /// Per row, what is added to the angle; `names` of the effects.
-std::vector<double> added_angles(const Drive& drive, const std::vector<Effect>& effects,
+std::vector<double> added_angles(const MotionRows& drive, const std::vector<Effect>& effects,
                                  const RowVariables& variables, int session, std::string& names) {
   const std::vector<double>& angle = drive.wheels[1].reading;
   std::vector<double> more(drive.rows(), 0.0);
@@ -45,8 +45,8 @@ bool steers(const std::vector<Effect>& effects) {
                      [](const Effect& one) { return is_steering(one.channel); });
 }
 
-Drive steered(Drive drive, const Robot& robot, const std::vector<Effect>& effects,
-              const RowVariables& variables, int session) {
+MotionRows steered(MotionRows drive, const Robot& robot, const std::vector<Effect>& effects,
+                   const RowVariables& variables, int session) {
   if (!steers(effects) || drive.wheels.size() != 2 || !drive.wheels[1].steers) return drive;
   if (!drive.gyro.empty() || !drive.steered.empty()) {
     throw std::logic_error("steering is taken in once, and before the gyro");

@@ -28,7 +28,8 @@ namespace trussmap {
 /// taken. Unchanged where no wheel is steered. Throws std::invalid_argument, naming the effects,
 /// where the measured wheel would have no way ahead; std::logic_error where the gyro or steering
 /// was taken in before.
-[[nodiscard]] Drive steered(Drive drive, const Robot& robot, const std::vector<Effect>& effects,
-                            const RowVariables& variables, int session);
+[[nodiscard]] MotionRows steered(MotionRows drive, const Robot& robot,
+                                 const std::vector<Effect>& effects, const RowVariables& variables,
+                                 int session);
 
 }  // namespace trussmap

@@ -26,11 +26,12 @@ double heading_under(double reading, double a, double b) {
 }
 
 /// One column each for sine and cosine.
-std::vector<EffectPattern> hard_iron(const std::vector<Recording>& recordings, double a, double b) {
+std::vector<EffectPattern> hard_iron(const std::vector<DrivenRecording>& recordings, double a,
+                                     double b) {
   std::vector<EffectPattern> result(2);
   for (EffectPattern& one : result) one.name = "hard iron";
-  for (const Recording& recording : recordings) {
-    const Drive& drive = recording.drive;
+  for (const DrivenRecording& recording : recordings) {
+    const MotionRows& drive = recording.drive;
     std::vector<DrivePattern> sine(drive.rows());
     std::vector<DrivePattern> cosine(drive.rows());
     for (std::size_t row = 0; row < drive.heading.size(); ++row) {
@@ -47,8 +48,8 @@ std::vector<EffectPattern> hard_iron(const std::vector<Recording>& recordings, d
 
 /// Whether some row lasts so long (its clock was set, or the robot stood for the night) that a turn
 /// per time may have gone round in it: its column is no straight line then.
-bool may_go_round_in_a_row(const Recording& recording) {
-  const Drive& drive = recording.drive;
+bool may_go_round_in_a_row(const DrivenRecording& recording) {
+  const MotionRows& drive = recording.drive;
   const double most = 0.5 * kFullTurn / kTurnPerTime;
   for (std::size_t row = 1; row < drive.rows(); ++row) {
     if (drive.t[row] - drive.t[row - 1] > most) return true;
@@ -58,7 +59,7 @@ bool may_go_round_in_a_row(const Recording& recording) {
 
 }  // namespace
 
-std::vector<Effect> common_errors(const std::vector<Recording>& recordings) {
+std::vector<Effect> common_errors(const std::vector<DrivenRecording>& recordings) {
   // The catalogue's names and shapes, written out: who only builds maps does without it.
   std::vector<Effect> result{
       {"wheel diameter ratio", Channel::difference, {constant_shape()}, {0.0}},
@@ -67,10 +68,10 @@ std::vector<Effect> common_errors(const std::vector<Recording>& recordings) {
   if (!lasting) result.push_back({"heading drift", Channel::drift, {constant_shape()}, {0.0}});
   const bool compass =
       std::any_of(recordings.begin(), recordings.end(),
-                  [](const Recording& recording) { return recording.drive.has_compass(); });
+                  [](const DrivenRecording& recording) { return recording.drive.has_compass(); });
   const bool gyro =
       std::any_of(recordings.begin(), recordings.end(),
-                  [](const Recording& recording) { return recording.drive.has_gyro(); });
+                  [](const DrivenRecording& recording) { return recording.drive.has_gyro(); });
   if (gyro && !lasting) result.push_back({"gyro bias", Channel::gyro, {constant_shape()}, {0.0}});
   if (compass) {
     result.push_back(
@@ -91,8 +92,8 @@ double common_error_sd(const Effect& effect) {
   throw std::invalid_argument(effect.name + " is no common error");
 }
 
-EffectParameters common_error_columns(const std::vector<Recording>& recordings, const Robot& robot,
-                                      const Eigen::VectorXd& coefficients) {
+EffectParameters common_error_columns(const std::vector<DrivenRecording>& recordings,
+                                      const Robot& robot, const Eigen::VectorXd& coefficients) {
   EffectParameters border;
   for (const Effect& effect : common_errors(recordings)) {
     const double sd = common_error_sd(effect);

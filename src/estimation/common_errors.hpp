@@ -21,14 +21,14 @@ namespace trussmap {
 
 /// As the catalogue has them, coefficients 0; those of the compass only where one was read, those
 /// per time only where no row lasts minutes.
-[[nodiscard]] std::vector<Effect> common_errors(const std::vector<Recording>& recordings);
+[[nodiscard]] std::vector<Effect> common_errors(const std::vector<DrivenRecording>& recordings);
 
 /// Standard deviation of the weak prior on such an effect's coefficients.
 [[nodiscard]] double common_error_sd(const Effect& effect);
 
 /// Their columns, in the order of their coefficients. Headings are the compass's readings less the
 /// hard iron that these coefficients have of it (none: 0).
-[[nodiscard]] EffectParameters common_error_columns(const std::vector<Recording>& recordings,
+[[nodiscard]] EffectParameters common_error_columns(const std::vector<DrivenRecording>& recordings,
                                                     const Robot& robot,
                                                     const Eigen::VectorXd& coefficients = {});
 

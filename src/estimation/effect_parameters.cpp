@@ -34,12 +34,12 @@ std::vector<const std::vector<DrivePattern>*> drive_patterns(const EffectParamet
   return result;
 }
 
-EffectPattern plain_effect(Channel channel, const std::vector<Recording>& recordings,
+EffectPattern plain_effect(Channel channel, const std::vector<DrivenRecording>& recordings,
                            const Robot& robot) {
   EffectPattern result;
   result.name = name_of(channel);
-  for (const Recording& recording : recordings) {
-    const Drive& drive = recording.drive;
+  for (const DrivenRecording& recording : recordings) {
+    const MotionRows& drive = recording.drive;
     std::vector<DrivePattern>& patterns = result.drives.emplace_back();
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       patterns.push_back(drive_pattern(channel, 1.0, row_motion(drive, row, robot)));

@@ -52,7 +52,8 @@ using EffectParameters = std::vector<EffectPattern>;
 
 /// A coefficient for all sessions that acts on every row alike: shape 1, of a channel that acts on
 /// drives or readings.
-[[nodiscard]] EffectPattern plain_effect(Channel channel, const std::vector<Recording>& recordings,
+[[nodiscard]] EffectPattern plain_effect(Channel channel,
+                                         const std::vector<DrivenRecording>& recordings,
                                          const Robot& robot);
 
 }  // namespace trussmap

@@ -14,8 +14,8 @@ constexpr double kLeastNew = 1e-3;  // of a basis vector that lies in the others
 
 }  // namespace
 
-GyroExcess gyro_excess(const Drive& drive, const std::vector<SegmentRow>& rows, const Robot& robot,
-                       const Noise& noise) {
+GyroExcess gyro_excess(const MotionRows& drive, const std::vector<SegmentRow>& rows,
+                       const Robot& robot, const Noise& noise) {
   GyroExcess result;
   if (drive.gyro.empty() || rows.empty()) return result;
   const auto count = static_cast<Eigen::Index>(rows.size());

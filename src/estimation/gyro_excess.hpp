@@ -30,7 +30,7 @@ struct GyroExcess {
 };
 
 /// Without readings, 0 numbers and no weights.
-[[nodiscard]] GyroExcess gyro_excess(const Drive& drive, const std::vector<SegmentRow>& rows,
+[[nodiscard]] GyroExcess gyro_excess(const MotionRows& drive, const std::vector<SegmentRow>& rows,
                                      const Robot& robot, const Noise& noise);
 
 /// What one unit of each pattern adds to the numbers, 4 x patterns; `patterns` as in

@@ -21,7 +21,7 @@ bool matters(const Run& run, const LeastMotion& least) {
   return run.spin ? run.turn >= least.spin : run.path >= least.drive;
 }
 
-std::vector<Run> runs_of(const Drive& drive, const std::vector<SegmentRow>& rows,
+std::vector<Run> runs_of(const MotionRows& drive, const std::vector<SegmentRow>& rows,
                          const Robot& robot) {
   std::vector<Run> runs;
   double begin = 0.0;
@@ -40,7 +40,7 @@ std::vector<Run> runs_of(const Drive& drive, const std::vector<SegmentRow>& rows
 
 }  // namespace
 
-std::vector<double> motion_changes(const Drive& drive, const std::vector<SegmentRow>& rows,
+std::vector<double> motion_changes(const MotionRows& drive, const std::vector<SegmentRow>& rows,
                                    const Robot& robot, const LeastMotion& least) {
   std::vector<double> times;
   bool any = false;

@@ -21,7 +21,7 @@ struct LeastMotion {
 };
 
 /// Times (ends of rows) at which the rows change from spin to drive or back, ascending.
-[[nodiscard]] std::vector<double> motion_changes(const Drive& drive,
+[[nodiscard]] std::vector<double> motion_changes(const MotionRows& drive,
                                                  const std::vector<SegmentRow>& rows,
                                                  const Robot& robot, const LeastMotion& least);
 

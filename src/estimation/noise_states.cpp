@@ -3,10 +3,10 @@
 #include "estimation/noise_states.hpp"
 
 #include "drive/body_motion.hpp"
+#include "drive/legs.hpp"
 #include "drive/row_motion.hpp"
 #include "drive/row_variables.hpp"
 #include "effects/channel_record.hpp"
-#include "recording/legs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -23,14 +23,14 @@ constexpr double kLeastVariance = 1e-8;  // of a step of a unit process
 /// A process that is to be laid over a problem.
 struct ProcessToLay {
   const RecordingProblem& problem;
-  const std::vector<Recording>& recordings;
+  const std::vector<DrivenRecording>& recordings;
   const Robot& robot;
   const std::vector<std::vector<Matrix4>>& influences;  ///< per segment and row
   Channel channel;
   ProcessKind process;
   double length;
 
-  [[nodiscard]] const Drive& drive_of(const Measurement& one) const {
+  [[nodiscard]] const MotionRows& drive_of(const Measurement& one) const {
     return recordings[idx(one.session)].drive;
   }
   [[nodiscard]] std::size_t pose_of(int node) const { return idx(node - problem.landmark_count()); }
@@ -38,7 +38,7 @@ struct ProcessToLay {
 
 /// What a unit of g adds to the pattern of a view.
 ViewVector unit_view(const ProcessToLay& lasting, const Measurement& one) {
-  const Drive& drive = lasting.drive_of(one);
+  const MotionRows& drive = lasting.drive_of(one);
   const std::size_t row = row_at(drive, lasting.problem.time_of(one.from));
   const double duration = std::max(drive.duration(row), 1e-9);
   const BodyMotion motion = body_motion(drive, row, lasting.robot);
@@ -49,7 +49,7 @@ ViewVector unit_view(const ProcessToLay& lasting, const Measurement& one) {
 /// What a unit of g in each row adds to what was driven.
 std::vector<Vector4> unit_rows(const ProcessToLay& lasting, const Measurement& one) {
   const std::vector<SegmentRow>& rows = lasting.problem.segments[one.source];
-  const Drive& drive = lasting.drive_of(one);
+  const MotionRows& drive = lasting.drive_of(one);
   std::vector<Vector4> c =
       is_segment(one) ? unit_columns(drive, rows, lasting.influences[one.source], lasting.channel,
                                      lasting.robot)
@@ -112,7 +112,7 @@ Chain chain_of(const ProcessToLay& lasting) {
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     if (!wanted[k]) continue;
     const PoseNode& node = problem.poses[k];
-    const Drive& drive = lasting.recordings[idx(node.session)].drive;
+    const MotionRows& drive = lasting.recordings[idx(node.session)].drive;
     const bool first = node.session != session;
     double at = node.t - drive.start();
     if (goes_with_distance(lasting.process)) {
@@ -215,13 +215,13 @@ LaidProcess lay_constants(const ProcessToLay& lasting) {
 
 }  // namespace
 
-std::vector<double> ends_of_legs(const Recording& recording) {
+std::vector<double> ends_of_legs(const DrivenRecording& recording) {
   std::vector<double> ends;
   for (const Sighting& sighting : recording.sightings) {
     if (sighting.standing()) ends.push_back(sighting.t);
   }
   if (!ends.empty()) return ends;
-  const Drive& drive = recording.drive;
+  const MotionRows& drive = recording.drive;
   double rested = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const bool rests = drive.rests(row);
@@ -249,7 +249,7 @@ std::map<int, Vector4> sums_by_leg(const std::vector<SegmentRow>& rows,
   return sums;
 }
 
-std::vector<Vector4> unit_columns(const Drive& drive, const std::vector<SegmentRow>& rows,
+std::vector<Vector4> unit_columns(const MotionRows& drive, const std::vector<SegmentRow>& rows,
                                   const std::vector<Matrix4>& influences, Channel channel,
                                   const Robot& robot) {
   const bool reads = acts_on(channel) == ActsOn::readings;
@@ -263,7 +263,7 @@ std::vector<Vector4> unit_columns(const Drive& drive, const std::vector<SegmentR
   return c;
 }
 
-std::vector<Vector4> unit_excesses(const Drive& drive, const std::vector<SegmentRow>& rows,
+std::vector<Vector4> unit_excesses(const MotionRows& drive, const std::vector<SegmentRow>& rows,
                                    const std::vector<Vector4>& weights, Channel channel,
                                    const Robot& robot) {
   std::vector<Vector4> c(rows.size(), Vector4::Zero());
@@ -276,7 +276,7 @@ std::vector<Vector4> unit_excesses(const Drive& drive, const std::vector<Segment
 }
 
 ProcessLayer::ProcessLayer(const RecordingProblem& problem,
-                           const std::vector<Recording>& recordings, const Robot& robot)
+                           const std::vector<DrivenRecording>& recordings, const Robot& robot)
     : problem_(problem), recordings_(recordings), robot_(robot) {
   influences_.reserve(problem.segments.size());
   for (const std::vector<SegmentRow>& rows : problem.segments) {

@@ -38,7 +38,7 @@ namespace trussmap {
 inline constexpr double kLongestGap = 5.0;  ///< s: a landmark unseen for longer is met anew
 
 /// Ends of a session's legs, s, ascending.
-[[nodiscard]] std::vector<double> ends_of_legs(const Recording& recording);
+[[nodiscard]] std::vector<double> ends_of_legs(const DrivenRecording& recording);
 /// The leg that time t lies in: how many have ended before.
 [[nodiscard]] int leg_at(const std::vector<double>& ends, double t);
 /// What rows add up to in each leg, the first of which begins at `from`, s: a row is of the leg
@@ -55,14 +55,14 @@ struct LaidProcess {
 };
 
 /// How a unit of g of a channel that acts on drives or readings changes the rows' four numbers.
-[[nodiscard]] std::vector<Vector4> unit_columns(const Drive& drive,
+[[nodiscard]] std::vector<Vector4> unit_columns(const MotionRows& drive,
                                                 const std::vector<SegmentRow>& rows,
                                                 const std::vector<Matrix4>& influences,
                                                 Channel channel, const Robot& robot);
 
 /// How a unit of g of a channel changes a gyro's numbers, row by row; weights as in
 /// gyro_excess.hpp.
-[[nodiscard]] std::vector<Vector4> unit_excesses(const Drive& drive,
+[[nodiscard]] std::vector<Vector4> unit_excesses(const MotionRows& drive,
                                                  const std::vector<SegmentRow>& rows,
                                                  const std::vector<Vector4>& weights,
                                                  Channel channel, const Robot& robot);
@@ -70,7 +70,7 @@ struct LaidProcess {
 /// Keeps references to problem and recordings. The rows' influences are reckoned once.
 class ProcessLayer {
  public:
-  ProcessLayer(const RecordingProblem& problem, const std::vector<Recording>& recordings,
+  ProcessLayer(const RecordingProblem& problem, const std::vector<DrivenRecording>& recordings,
                const Robot& robot);
 
   /// Empty where the channel acts on nothing that is measured.
@@ -78,14 +78,14 @@ class ProcessLayer {
 
  private:
   const RecordingProblem& problem_;
-  const std::vector<Recording>& recordings_;
+  const std::vector<DrivenRecording>& recordings_;
   Robot robot_;
   std::vector<std::vector<Matrix4>> influences_;  ///< per segment and row
 };
 
 /// Takes the model's processes into a problem: states, terms, and whiteners with what lasts within
 /// each measurement. A process that acts on nothing measured adds nothing.
-void add_processes(RecordingProblem& problem, const std::vector<Recording>& recordings,
+void add_processes(RecordingProblem& problem, const std::vector<DrivenRecording>& recordings,
                    const Model& model);
 
 /// Takes the processes into the problem instead of those that it has: states, terms and `within`.

@@ -31,7 +31,7 @@ void put_processes(RecordingProblem& problem, const std::vector<LaidProcess>& la
   }
 }
 
-void add_processes(RecordingProblem& problem, const std::vector<Recording>& recordings,
+void add_processes(RecordingProblem& problem, const std::vector<DrivenRecording>& recordings,
                    const Model& model) {
   if (model.noise.processes.empty()) return;
   const ProcessLayer layer(problem, recordings, model.robot);

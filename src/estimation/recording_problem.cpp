@@ -41,7 +41,8 @@ struct SessionSegments {
   std::vector<std::vector<SegmentRow>> rows;
 };
 
-SessionSegments segments_of(const SessionPoses& poses, const Drive& drive, const Model& model) {
+SessionSegments segments_of(const SessionPoses& poses, const MotionRows& drive,
+                            const Model& model) {
   using Node = std::pair<const double, int>;
   std::vector<std::pair<const Node*, const Node*>> ends;
   for (auto to = poses.at.begin(), from = to; to != poses.at.end(); from = to++) {
@@ -65,7 +66,7 @@ SessionSegments segments_of(const SessionPoses& poses, const Drive& drive, const
 }
 
 RecordingProblem with_segments(RecordingProblem problem, SessionSegments segments,
-                               const Drive& drive, const Model& model) {
+                               const MotionRows& drive, const Model& model) {
   for (std::size_t k = 0; k < segments.measured.size(); ++k) {
     Measurement& one = segments.measured[k];
     one.source = problem.segments.size();
@@ -115,7 +116,7 @@ GrowingProblem with_sightings(GrowingProblem growing, const std::vector<Sighting
 }
 
 /// Truth, fixes and loops, of poses that are not left out.
-RecordingProblem with_places(RecordingProblem problem, const Recording& recording,
+RecordingProblem with_places(RecordingProblem problem, const DrivenRecording& recording,
                              const RowsUsed& used, const SessionPoses& poses, const Noise& noise) {
   const auto add = [&](Measurement one, double from, std::size_t source) {
     const auto pose = poses.at.find(from);
@@ -142,8 +143,8 @@ RecordingProblem with_places(RecordingProblem problem, const Recording& recordin
   return problem;
 }
 
-GrowingProblem with_session(GrowingProblem growing, const Recording& recording, const Model& model,
-                            const ProblemOptions& options) {
+GrowingProblem with_session(GrowingProblem growing, const DrivenRecording& recording,
+                            const Model& model, const ProblemOptions& options) {
   RecordingProblem& problem = growing.problem;
   SessionPoses poses;
   poses.session = static_cast<int>(problem.sessions.size());
@@ -163,7 +164,7 @@ GrowingProblem with_session(GrowingProblem growing, const Recording& recording, 
 
 /// After all sessions, so that every sighted landmark has its node. Sessions come with copies of
 /// one survey: the same numbers count once.
-GrowingProblem with_surveys(GrowingProblem growing, const std::vector<Recording>& recordings,
+GrowingProblem with_surveys(GrowingProblem growing, const std::vector<DrivenRecording>& recordings,
                             const Noise& noise) {
   std::set<std::tuple<int, double, double>> places;
   std::set<std::tuple<int, double, double, double>> headings;
@@ -172,7 +173,7 @@ GrowingProblem with_surveys(GrowingProblem growing, const std::vector<Recording>
     one.source = source;
     growing.problem.measurements.push_back(one);
   };
-  for (const Recording& recording : recordings) {
+  for (const DrivenRecording& recording : recordings) {
     for (std::size_t k = 0; k < recording.survey.size(); ++k) {
       const SurveyPoint& point = recording.survey[k];
       const auto node = growing.landmark_node.find(point.landmark);
@@ -206,10 +207,10 @@ int node_of(const RecordingProblem& problem, NodeType type, int number) {
 
 }  // namespace
 
-RecordingProblem make_problem(const std::vector<Recording>& recordings, const Model& model,
+RecordingProblem make_problem(const std::vector<DrivenRecording>& recordings, const Model& model,
                               const ProblemOptions& options) {
   GrowingProblem growing;
-  for (const Recording& recording : recordings) {
+  for (const DrivenRecording& recording : recordings) {
     growing = with_session(std::move(growing), recording, model, options);
   }
   if (options.survey) growing = with_surveys(std::move(growing), recordings, model.noise);

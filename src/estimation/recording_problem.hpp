@@ -98,7 +98,7 @@ struct ProblemOptions {
 };
 
 /// Throws InputError where a recording has nothing in use that ties it to a place.
-[[nodiscard]] RecordingProblem make_problem(const std::vector<Recording>& recordings,
+[[nodiscard]] RecordingProblem make_problem(const std::vector<DrivenRecording>& recordings,
                                             const Model& model, const ProblemOptions& options = {});
 
 /// Values of all unknowns but the coefficients.

@@ -77,7 +77,7 @@ Step step_of(const SegmentRow& row, const std::vector<const std::vector<DrivePat
 
 }  // namespace
 
-std::vector<SegmentRow> segment_rows(const Drive& drive, double from, double to,
+std::vector<SegmentRow> segment_rows(const MotionRows& drive, double from, double to,
                                      const Robot& robot) {
   std::vector<SegmentRow> rows;
   for (const DriveRow& row : rows_between(drive, from, to)) {
@@ -176,7 +176,7 @@ std::vector<Matrix4> row_influences(const std::vector<SegmentRow>& rows,
   return influences;
 }
 
-Matrix4 segment_covariance(const Drive& drive, const std::vector<SegmentRow>& rows,
+Matrix4 segment_covariance(const MotionRows& drive, const std::vector<SegmentRow>& rows,
                            const Robot& robot, const Noise& noise) {
   Matrix4 P = Matrix4::Zero();  // of (x, y, a, S)
   Pose pose;

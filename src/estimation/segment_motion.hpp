@@ -74,7 +74,7 @@ struct SegmentMotion {
 };
 
 /// Rows between two times, with the wheelbase's turns.
-[[nodiscard]] std::vector<SegmentRow> segment_rows(const Drive& drive, double from, double to,
+[[nodiscard]] std::vector<SegmentRow> segment_rows(const MotionRows& drive, double from, double to,
                                                    const Robot& robot);
 
 /// Compass readings among the rows.
@@ -105,7 +105,8 @@ struct SegmentWithEffects {
 
 /// Joint covariance of (d, a, m), in the frame of the start; fourth row and column zero without
 /// readings. Never below (10 micrometres)^2 and (10 microradians)^2, lest standing still be exact.
-[[nodiscard]] Matrix4 segment_covariance(const Drive& drive, const std::vector<SegmentRow>& rows,
-                                         const Robot& robot, const Noise& noise);
+[[nodiscard]] Matrix4 segment_covariance(const MotionRows& drive,
+                                         const std::vector<SegmentRow>& rows, const Robot& robot,
+                                         const Noise& noise);
 
 }  // namespace trussmap

@@ -60,8 +60,8 @@ struct RowsAlone {
   Path recorded;
 };
 
-RowsAlone rows_alone(const Drive& drive, const std::vector<SegmentRow>& rows, const Robot& robot,
-                     const Noise& noise,
+RowsAlone rows_alone(const MotionRows& drive, const std::vector<SegmentRow>& rows,
+                     const Robot& robot, const Noise& noise,
                      const std::vector<const std::vector<DrivePattern>*>& patterns,
                      const Eigen::VectorXd& offsets) {
   RowsAlone alone;
@@ -120,7 +120,7 @@ SegmentNoise noise_at(const std::vector<SegmentRow>& rows, const RowsAlone& alon
 
 }  // namespace
 
-SegmentNoise segment_noise(const Drive& drive, const std::vector<SegmentRow>& rows,
+SegmentNoise segment_noise(const MotionRows& drive, const std::vector<SegmentRow>& rows,
                            const Robot& robot, const Noise& noise,
                            const std::vector<const std::vector<DrivePattern>*>& patterns,
                            const Eigen::VectorXd& offsets,
@@ -163,7 +163,7 @@ SegmentNoise believed(const RecordingProblem& problem, std::size_t k,
 }  // namespace
 
 SegmentNoise believed_noise(const RecordingProblem& problem, std::size_t k,
-                            const std::vector<Recording>& recordings, const Model& model,
+                            const std::vector<DrivenRecording>& recordings, const Model& model,
                             const EffectParameters& border, const Eigen::VectorXd& offsets,
                             const RecordingState& state) {
   const Measurement& one = problem.measurements[k];
@@ -174,7 +174,7 @@ SegmentNoise believed_noise(const RecordingProblem& problem, std::size_t k,
   return believed(problem, k, rows, alone, model.noise, state);
 }
 
-double relinearise(RecordingProblem& problem, const std::vector<Recording>& recordings,
+double relinearise(RecordingProblem& problem, const std::vector<DrivenRecording>& recordings,
                    const Model& model, const EffectParameters& border,
                    const Eigen::VectorXd& offsets, const RecordingState& state) {
   std::vector<double> changes(problem.measurements.size(), 0.0);

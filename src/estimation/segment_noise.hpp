@@ -39,20 +39,20 @@ struct SegmentNoise {
 /// segment_motion. C never falls below (10 micrometres)^2 and (10 microradians)^2, lest standing
 /// still be exact.
 [[nodiscard]] SegmentNoise segment_noise(
-    const Drive& drive, const std::vector<SegmentRow>& rows, const Robot& robot, const Noise& noise,
-    const std::vector<const std::vector<DrivePattern>*>& patterns, const Eigen::VectorXd& offsets,
-    const std::vector<Eigen::Vector3d>& missing);
+    const MotionRows& drive, const std::vector<SegmentRow>& rows, const Robot& robot,
+    const Noise& noise, const std::vector<const std::vector<DrivePattern>*>& patterns,
+    const Eigen::VectorXd& offsets, const std::vector<Eigen::Vector3d>& missing);
 
 /// The noise of a problem's k-th measurement, a segment, at the n that the state believes.
 [[nodiscard]] SegmentNoise believed_noise(const RecordingProblem& problem, std::size_t k,
-                                          const std::vector<Recording>& recordings,
+                                          const std::vector<DrivenRecording>& recordings,
                                           const Model& model, const EffectParameters& border,
                                           const Eigen::VectorXd& offsets,
                                           const RecordingState& state);
 
 /// Takes all segments' noise where the state believes it: changes their `bend` and whitener.
 /// Returns the largest change of a value, in standard deviations.
-double relinearise(RecordingProblem& problem, const std::vector<Recording>& recordings,
+double relinearise(RecordingProblem& problem, const std::vector<DrivenRecording>& recordings,
                    const Model& model, const EffectParameters& border,
                    const Eigen::VectorXd& offsets, const RecordingState& state);
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/session_instants.hpp"
 
+#include "drive/legs.hpp"
 #include "estimation/motion_changes.hpp"
-#include "recording/legs.hpp"
 #include "recording/time_spans.hpp"
 #include "trussmap/error.hpp"
 
@@ -13,11 +13,11 @@
 namespace trussmap {
 namespace {
 
-std::vector<std::size_t> truth_rows_used(const Recording& recording, const Robot& robot,
+std::vector<std::size_t> truth_rows_used(const DrivenRecording& recording, const Robot& robot,
                                          const ProblemOptions& options) {
   std::vector<std::size_t> used;
   if (!options.truth || recording.truth.empty()) return used;
-  const Drive& drive = recording.drive;
+  const MotionRows& drive = recording.drive;
   double path = 0.0;
   double turn = 0.0;
   double from = drive.start();
@@ -43,10 +43,11 @@ std::vector<std::size_t> truth_rows_used(const Recording& recording, const Robot
 
 /// All but those that follow one another faster than their errors change; at rest one in
 /// `fix_gap`, too, for each tells more of the place.
-std::vector<std::size_t> fixes_used(const Recording& recording, const ProblemOptions& options) {
+std::vector<std::size_t> fixes_used(const DrivenRecording& recording,
+                                    const ProblemOptions& options) {
   std::vector<std::size_t> used;
   if (!options.fixes || recording.fixes.empty()) return used;
-  const Drive& drive = recording.drive;
+  const MotionRows& drive = recording.drive;
   const std::vector<double> driven = driven_path(drive);
   double last_t = 0.0;
   double last_path = 0.0;
@@ -64,7 +65,7 @@ std::vector<std::size_t> fixes_used(const Recording& recording, const ProblemOpt
 }
 
 /// Ascending.
-std::vector<double> times_measured(const Recording& recording, const RowsUsed& used) {
+std::vector<double> times_measured(const DrivenRecording& recording, const RowsUsed& used) {
   std::vector<double> times;
   for (const Sighting& sighting : recording.sightings) times.push_back(sighting.t);
   for (const std::size_t k : used.truth) times.push_back(recording.truth[k].t);
@@ -97,7 +98,8 @@ std::vector<double> outside(std::vector<double> times, const std::vector<TimeSpa
 
 }  // namespace
 
-RowsUsed rows_used(const Recording& recording, const Robot& robot, const ProblemOptions& options) {
+RowsUsed rows_used(const DrivenRecording& recording, const Robot& robot,
+                   const ProblemOptions& options) {
   RowsUsed used{truth_rows_used(recording, robot, options), fixes_used(recording, options),
                 options.loops && !recording.loops.empty()};
   if (recording.sightings.empty() && used.truth.empty() && used.fixes.empty() && !used.loops) {
@@ -108,7 +110,7 @@ RowsUsed rows_used(const Recording& recording, const Robot& robot, const Problem
   return used;
 }
 
-std::vector<double> session_instants(const Recording& recording, const RowsUsed& used,
+std::vector<double> session_instants(const DrivenRecording& recording, const RowsUsed& used,
                                      const Robot& robot, const ProblemOptions& options,
                                      const std::vector<TimeSpan>& left_out) {
   const std::vector<double> times = outside(times_measured(recording, used), left_out);

@@ -18,13 +18,13 @@ struct RowsUsed {
 };
 
 /// Throws InputError where a recording has nothing in use that ties it to a place.
-[[nodiscard]] RowsUsed rows_used(const Recording& recording, const Robot& robot,
+[[nodiscard]] RowsUsed rows_used(const DrivenRecording& recording, const Robot& robot,
                                  const ProblemOptions& options);
 
 /// When something is measured, at both ends of loops, and at changes between spinning and driving,
 /// s, ascending; without instants inside what is left out, and those that would stand alone.
-[[nodiscard]] std::vector<double> session_instants(const Recording& recording, const RowsUsed& used,
-                                                   const Robot& robot,
+[[nodiscard]] std::vector<double> session_instants(const DrivenRecording& recording,
+                                                   const RowsUsed& used, const Robot& robot,
                                                    const ProblemOptions& options,
                                                    const std::vector<TimeSpan>& left_out);
 

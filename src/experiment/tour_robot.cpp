@@ -82,7 +82,7 @@ Traversal TourRobot::with_readings(const std::vector<DrivenRow>& rows, double he
   Noise noise;
   noise.left = noise.right = wheels.noise;
   noise.compass = sd_of_mean_error(options_.compass_error);
-  Drive drive;
+  MotionRows drive;
   const double whole = heading_ - heading;
   double turned = 0.0;
   double spun = 0.0;  // as recorded, of which the whole turn is known

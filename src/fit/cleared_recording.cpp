@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kPasses = 2;
 
-ClearedRecording as_recorded(const Recording& recording) {
+ClearedRecording as_recorded(const DrivenRecording& recording) {
   ClearedRecording result;
   result.recording = recording;
   result.sensor.assign(recording.sightings.size(), Vector2::Zero());
@@ -35,11 +35,11 @@ DrivePattern sum_at(const EffectParameters& border, const Eigen::VectorXd& offse
   return sum;
 }
 
-void clear_drive(const Recording& recorded, const EffectParameters& border,
+void clear_drive(const DrivenRecording& recorded, const EffectParameters& border,
                  const Eigen::VectorXd& offsets, std::size_t session, const Robot& robot,
                  ClearedRecording& result) {
-  const Drive& drive = recorded.drive;
-  Drive& clear = result.recording.drive;
+  const MotionRows& drive = recorded.drive;
+  MotionRows& clear = result.recording.drive;
   result.slip.assign(drive.rows(), 0.0);
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const DrivePattern more = sum_at(border, offsets, session, row);
@@ -55,7 +55,7 @@ void clear_drive(const Recording& recorded, const EffectParameters& border,
   if (!slips) result.slip.clear();
 }
 
-void clear_sightings(const Recording& recorded, const EffectParameters& border,
+void clear_sightings(const DrivenRecording& recorded, const EffectParameters& border,
                      const Eigen::VectorXd& offsets, int session, ClearedRecording& result) {
   for (std::size_t k = 0; k < recorded.sightings.size(); ++k) {
     const ViewPattern view = view_of(border, offsets, RecordingStream::sightings, idx(session), k);
@@ -70,7 +70,7 @@ void clear_sightings(const Recording& recorded, const EffectParameters& border,
   }
 }
 
-void clear(const std::vector<Recording>& timed, const EffectParameters& border,
+void clear(const std::vector<DrivenRecording>& timed, const EffectParameters& border,
            const Eigen::VectorXd& offsets, const Robot& robot,
            std::vector<ClearedRecording>& result) {
   for (std::size_t s = 0; s < timed.size(); ++s) {
@@ -82,7 +82,7 @@ void clear(const std::vector<Recording>& timed, const EffectParameters& border,
 }  // namespace
 
 SessionPath reckoned_path(const ClearedRecording& one, const Model& model) {
-  const Drive& drive = one.recording.drive;
+  const MotionRows& drive = one.recording.drive;
   SessionPath path;
   path.start.heading =
       initial_heading(drive, drive.start(), model.robot, model.noise).heading.heading;
@@ -102,17 +102,18 @@ std::vector<SessionPath> reckoned_paths(const std::vector<ClearedRecording>& rec
 
 }  // namespace
 
-std::vector<ClearedRecording> cleared(const std::vector<Recording>& recorded, const Model& model) {
+std::vector<ClearedRecording> cleared(const std::vector<DrivenRecording>& recorded,
+                                      const Model& model) {
   std::vector<ClearedRecording> result;
   if (model.effects.empty()) {
-    for (const Recording& one : with_gyro(recorded, model.robot, model.noise)) {
+    for (const DrivenRecording& one : with_gyro(recorded, model.robot, model.noise)) {
       result.push_back(as_recorded(one));
     }
     return result;
   }
   std::vector<Effect> effects = model.effects;
   for (Effect& effect : effects) effect.coefficients = coefficients_of(effect, recorded.size());
-  std::vector<Recording> timed;
+  std::vector<DrivenRecording> timed;
   std::vector<SessionPath> paths;
   for (int pass = 0; pass < kPasses; ++pass) {
     if (pass > 0) paths = reckoned_paths(result, model);
@@ -121,7 +122,7 @@ std::vector<ClearedRecording> cleared(const std::vector<Recording>& recorded, co
           with_gyro(steered(recorded, effects, model.robot, paths), model.robot, model.noise),
           effects, model.robot);
       result.clear();
-      for (const Recording& recording : timed) result.push_back(as_recorded(recording));
+      for (const DrivenRecording& recording : timed) result.push_back(as_recorded(recording));
     }
     if (pass == 0) paths = reckoned_paths(result, model);
     const ShapeContext context(timed, model.robot, paths);
@@ -146,7 +147,7 @@ std::vector<ClearedRecording> cleared(const FitState& fit) {
 
 std::vector<ClearedRecording> cleared(const FitState& fit, const Eigen::VectorXd& offsets) {
   std::vector<ClearedRecording> result;
-  for (const Recording& recording : fit.recordings) result.push_back(as_recorded(recording));
+  for (const DrivenRecording& recording : fit.recordings) result.push_back(as_recorded(recording));
   clear(fit.recordings, fit.columns.border, offsets, fit.model.robot, result);
   return result;
 }

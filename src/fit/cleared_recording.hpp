@@ -25,13 +25,13 @@
 namespace trussmap {
 
 struct ClearedRecording {
-  Recording recording;          ///< truth and survey as they were
+  DrivenRecording recording;    ///< truth and survey as they were
   std::vector<double> slip;     ///< per drive row, m to the robot's left; empty: none
   std::vector<Vector2> sensor;  ///< per sighting, m, robot frame
 };
 
 /// One per recording. Throws std::invalid_argument, naming the effect, where one cannot be applied.
-[[nodiscard]] std::vector<ClearedRecording> cleared(const std::vector<Recording>& recordings,
+[[nodiscard]] std::vector<ClearedRecording> cleared(const std::vector<DrivenRecording>& recordings,
                                                     const Model& model);
 
 /// Its dead-reckoned path, from the first compass heading (else 0) at the origin.

@@ -154,7 +154,7 @@ void ColumnBuilder::take_training_segments() {
 
 void ColumnBuilder::take_training_segments(Segment& segment) {
   const std::vector<Row>& rows = *segment_rows_;
-  const Drive& drive = context_.recordings()[segment.session].drive;
+  const MotionRows& drive = context_.recordings()[segment.session].drive;
   std::vector<std::size_t>& middles = middles_[segment.session];
   segment.begin = training_segments_.size();
   for (std::size_t k = segment.row_begin; k < segment.row_end;) {

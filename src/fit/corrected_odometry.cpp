@@ -196,7 +196,7 @@ class RowAtHand {
   Noise noise_;
   bool gyro_;
   std::optional<WheelKinematics> kinematics_;  ///< of other wheels than two
-  Drive drive_;                                ///< of this row alone
+  MotionRows drive_;                           ///< of this row alone
 };
 
 /// Where a row leads from now.

@@ -39,7 +39,7 @@ double largest(const std::vector<std::vector<double>>& values) {
 }
 
 template <typename Event>
-RowVariables event_variables(const Recording& recording, const Robot& robot,
+RowVariables event_variables(const DrivenRecording& recording, const Robot& robot,
                              const SessionPath& path, const std::vector<Event>& events,
                              int session) {
   std::vector<double> instants;
@@ -53,12 +53,12 @@ RowVariables event_variables(const Recording& recording, const Robot& robot,
 
 }  // namespace
 
-ShapeContext::ShapeContext(const std::vector<Recording>& recordings, const Robot& robot,
+ShapeContext::ShapeContext(const std::vector<DrivenRecording>& recordings, const Robot& robot,
                            const std::vector<SessionPath>& paths)
     : recordings_(recordings), robot_(robot), paths_(paths) {}
 
 RowMotion ShapeContext::motion(std::size_t session, std::size_t row) const {
-  const Drive& drive = recordings_[session].drive;
+  const MotionRows& drive = recordings_[session].drive;
   RowMotion motion = row_motion(drive, row, robot_);
   const SessionPath& path = paths_[session];
   if (path.missing.empty()) return motion;
@@ -77,7 +77,7 @@ const RowVariables& ShapeContext::variables(std::size_t session, Instant at) con
   const auto key = std::make_pair(session, at);
   const auto found = variables_.find(key);
   if (found != variables_.end()) return found->second;
-  const Recording& one = recordings_[session];
+  const DrivenRecording& one = recordings_[session];
   const SessionPath& path = paths_[session];
   const int number = static_cast<int>(session);
   const auto made = [&]() -> RowVariables {
@@ -135,7 +135,7 @@ auto in_words_of(const Effect& effect, const Action& action) {
 }
 
 Column make_column(Channel channel, const Shape& shape, int session, const ShapeContext& context) {
-  const std::vector<Recording>& recordings = context.recordings();
+  const std::vector<DrivenRecording>& recordings = context.recordings();
   Column column;
   if (acts_on(channel) == ActsOn::views) {
     const auto add = [&](Instant at, bool acts, std::vector<std::vector<ViewPattern>>& patterns) {
@@ -273,7 +273,7 @@ EffectColumns effect_columns(const std::vector<Effect>& effects, const ShapeCont
   return result;
 }
 
-std::vector<double> retimed(const std::vector<double>& instants, const Recording& recording,
+std::vector<double> retimed(const std::vector<double>& instants, const DrivenRecording& recording,
                             std::size_t session, std::size_t sessions,
                             const std::vector<Effect>& effects, const Robot& robot, Channel delay) {
   std::vector<double> result = instants;
@@ -293,13 +293,13 @@ std::vector<double> retimed(const std::vector<double>& instants, const Recording
   return result;
 }
 
-std::vector<Recording> steered(const std::vector<Recording>& recordings,
-                               const std::vector<Effect>& effects, const Robot& robot,
-                               const std::vector<SessionPath>& paths) {
-  std::vector<Recording> result = recordings;
+std::vector<DrivenRecording> steered(const std::vector<DrivenRecording>& recordings,
+                                     const std::vector<Effect>& effects, const Robot& robot,
+                                     const std::vector<SessionPath>& paths) {
+  std::vector<DrivenRecording> result = recordings;
   if (!steers(effects)) return result;
   for (std::size_t s = 0; s < result.size(); ++s) {
-    Drive& drive = result[s].drive;
+    MotionRows& drive = result[s].drive;
     const bool led = s < paths.size() && paths[s].ends.size() == drive.rows();
     const int session = static_cast<int>(s);
     const RowVariables variables =
@@ -310,15 +310,15 @@ std::vector<Recording> steered(const std::vector<Recording>& recordings,
   return result;
 }
 
-Channel delay_of_legs(const Recording& recording) {
+Channel delay_of_legs(const DrivenRecording& recording) {
   const bool fixes_alone =
       recording.sightings.empty() && recording.truth.empty() && !recording.fixes.empty();
   return fixes_alone ? Channel::fix_delay : Channel::delay;
 }
 
-std::vector<Recording> retimed(const std::vector<Recording>& recordings,
-                               const std::vector<Effect>& effects, const Robot& robot) {
-  std::vector<Recording> result = recordings;
+std::vector<DrivenRecording> retimed(const std::vector<DrivenRecording>& recordings,
+                                     const std::vector<Effect>& effects, const Robot& robot) {
+  std::vector<DrivenRecording> result = recordings;
   for (std::size_t s = 0; s < recordings.size(); ++s) {
     const auto shift = [&](auto& events, Channel delay) {
       std::vector<double> instants;
@@ -331,7 +331,7 @@ std::vector<Recording> retimed(const std::vector<Recording>& recordings,
     shift(result[s].truth, Channel::delay);
     shift(result[s].fixes, Channel::fix_delay);
   }
-  for (Recording& recording : result) {
+  for (DrivenRecording& recording : result) {
     const auto outside = [&recording](const auto& event) {
       return event.t < recording.drive.start() || event.t > recording.drive.t.back();
     };

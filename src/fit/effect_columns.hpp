@@ -57,7 +57,7 @@ class ShapeContext {
  public:
   /// Keeps references to recordings and paths. Variables are made when first asked for: several
   /// threads may ask for those that prepare has made.
-  ShapeContext(const std::vector<Recording>& recordings, const Robot& robot,
+  ShapeContext(const std::vector<DrivenRecording>& recordings, const Robot& robot,
                const std::vector<SessionPath>& paths);
 
   /// Values of a shape per session, per row at its middle or end, per sighting, truth row, fix.
@@ -70,11 +70,11 @@ class ShapeContext {
   /// A row's travels, its noise taken out.
   [[nodiscard]] RowMotion motion(std::size_t session, std::size_t row) const;
 
-  [[nodiscard]] const std::vector<Recording>& recordings() const { return recordings_; }
+  [[nodiscard]] const std::vector<DrivenRecording>& recordings() const { return recordings_; }
   [[nodiscard]] const Robot& robot() const { return robot_; }
 
  private:
-  const std::vector<Recording>& recordings_;
+  const std::vector<DrivenRecording>& recordings_;
   Robot robot_;
   const std::vector<SessionPath>& paths_;
   mutable std::map<std::pair<std::size_t, Instant>, RowVariables> variables_;
@@ -102,24 +102,25 @@ class ShapeContext {
 
 /// Sightings, truth rows and fixes moved back by the delays of the effects; those that fall out of
 /// the drive are dropped. Shapes of delays see no path: heading, x and y are 0.
-[[nodiscard]] std::vector<Recording> retimed(const std::vector<Recording>& recordings,
-                                             const std::vector<Effect>& effects,
-                                             const Robot& robot);
+[[nodiscard]] std::vector<DrivenRecording> retimed(const std::vector<DrivenRecording>& recordings,
+                                                   const std::vector<Effect>& effects,
+                                                   const Robot& robot);
 
 /// Any instants of one of the sessions, moved back in the same way by effects of that channel.
 [[nodiscard]] std::vector<double> retimed(const std::vector<double>& instants,
-                                          const Recording& recording, std::size_t session,
+                                          const DrivenRecording& recording, std::size_t session,
                                           std::size_t sessions, const std::vector<Effect>& effects,
                                           const Robot& robot, Channel delay = Channel::delay);
 
 /// Drives with the steering effects taken in; gyros are not yet. Shapes see the paths where there
 /// is one for every row, else a robot at (0, 0, 0).
-[[nodiscard]] std::vector<Recording> steered(const std::vector<Recording>& recordings,
-                                             const std::vector<Effect>& effects, const Robot& robot,
-                                             const std::vector<SessionPath>& paths);
+[[nodiscard]] std::vector<DrivenRecording> steered(const std::vector<DrivenRecording>& recordings,
+                                                   const std::vector<Effect>& effects,
+                                                   const Robot& robot,
+                                                   const std::vector<SessionPath>& paths);
 
 /// The channel that delays what a recording's legs end at: its fixes', where it has nothing else.
-[[nodiscard]] Channel delay_of_legs(const Recording& recording);
+[[nodiscard]] Channel delay_of_legs(const DrivenRecording& recording);
 
 /// Whether the channel adds the same to every row, however short, by a shape that counts no events.
 /// Its size is then no matter of rows.

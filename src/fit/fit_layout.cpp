@@ -27,7 +27,7 @@ bool steering_sees_path(const std::vector<Effect>& effects) {
 }
 
 /// What was recorded, driven as the steering effects say.
-std::vector<Recording> as_steered(const FitTask& task, const FitState& fit) {
+std::vector<DrivenRecording> as_steered(const FitTask& task, const FitState& fit) {
   const Model& model = fit.model;
   if (!steers(model.effects)) return task.recorded;
   return with_gyro(steered(task.raw, model.effects, model.robot, fit.paths), model.robot,

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/fit_model.hpp"
 
+#include "drive/well_formed.hpp"
 #include "estimation/measurement_rows.hpp"
 #include "fit/fit_state.hpp"
 #include "recording/time_spans.hpp"
-#include "recording/well_formed.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ std::vector<FittedLandmark> landmarks_of(const FitState& fit) {
     one.name = fit.problem.landmarks[k];
     one.position = fit.adjustment.state.landmarks[k];
     one.covariance = fit.adjustment.landmark_covariances[k];
-    for (const Recording& recording : fit.recordings) {
+    for (const DrivenRecording& recording : fit.recordings) {
       for (const SurveyPoint& point : recording.survey) {
         if (point.landmark == one.name) one.survey = Vector2(point.x, point.y);
       }
@@ -96,13 +96,14 @@ ModelFit model_fit(FitState state, const FitOptions& options) {
   return fit;
 }
 
-ModelFit fit_model(const std::vector<Recording>& recordings, const Model& model,
+ModelFit fit_model(const std::vector<DrivenRecording>& recordings, const Model& model,
                    const FitOptions& options) {
   require_well_formed(recordings);
   return model_fit(fit_recordings(recordings, model, fitter_options(options)), options);
 }
 
-ModelFit refit(const std::vector<Recording>& recordings, const Model& model, const ModelFit& near) {
+ModelFit refit(const std::vector<DrivenRecording>& recordings, const Model& model,
+               const ModelFit& near) {
   FitterOptions how = fitter_options(near.options);
   how.near = near.state.get();
   return model_fit(fit_recordings(recordings, model, how), near.options);

@@ -16,9 +16,9 @@ namespace trussmap {
 
 /// What is asked.
 struct FitTask {
-  const std::vector<Recording>& raw;
-  std::vector<Recording> recorded;  ///< with the gyro taken in, where there is one
-  Model model;                      ///< common errors in it, and the coefficients at first
+  const std::vector<DrivenRecording>& raw;
+  std::vector<DrivenRecording> recorded;  ///< with the gyro taken in, where there is one
+  Model model;                            ///< common errors in it, and the coefficients at first
   const FitterOptions& options;
 };
 

@@ -25,10 +25,10 @@ bool have_same_nodes(const RecordingProblem& one, const RecordingProblem& other)
                     same);
 }
 
-std::vector<Recording> without_own_effects(const FitTask& task, const FitState& fit) {
+std::vector<DrivenRecording> without_own_effects(const FitTask& task, const FitState& fit) {
   Model own = fit.model;
   own.effects.resize(fit.model.effects.size() - fit.common_errors);
-  std::vector<Recording> result;
+  std::vector<DrivenRecording> result;
   for (ClearedRecording& one : cleared(task.raw, own)) result.push_back(std::move(one.recording));
   return result;
 }
@@ -67,9 +67,9 @@ void lay_start(const FitTask& task, StartKind kind, Fitting& now) {
   static_cast<void>(choose_gauge(fit.problem));  // refuses what has no start
   const bool freed = own_are_known(task, fit) || (fit.common_errors > 0 && !now.only_common());
   const bool as_fitted = task.options.problem.left_out.empty() && !freed;
-  const std::vector<Recording> without =
-      freed ? without_own_effects(task, fit) : std::vector<Recording>();
-  const std::vector<Recording>& recordings = freed ? without : fit.recordings;
+  const std::vector<DrivenRecording> without =
+      freed ? without_own_effects(task, fit) : std::vector<DrivenRecording>();
+  const std::vector<DrivenRecording>& recordings = freed ? without : fit.recordings;
   ProblemOptions all = task.options.problem;
   all.left_out.clear();
   const RecordingProblem problem =
@@ -94,7 +94,7 @@ bool start_lost(const FitTask& task, const FitState& fit) {
     return fit.adjustment.gate_widened > 1.0;
   }
   const bool led = std::any_of(task.recorded.begin(), task.recorded.end(),
-                               [](const Recording& one) { return one.drive.has_compass(); });
+                               [](const DrivenRecording& one) { return one.drive.has_compass(); });
   return !led && fit.adjustment.chi2 > kFarTooLarge * std::max(1, fit.adjustment.dof);
 }
 

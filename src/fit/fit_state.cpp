@@ -21,7 +21,7 @@ constexpr double kMostDispersion = 4.0;  // chi^2/dof
 constexpr int kMisfitRounds = 4;
 
 /// With the common errors that are freed, and every coefficient.
-Model resolved(const Model& model, const std::vector<Recording>& recordings, bool common) {
+Model resolved(const Model& model, const std::vector<DrivenRecording>& recordings, bool common) {
   Model result = model;
   if (common) {
     for (const Effect& effect : common_errors(recordings)) result.effects.push_back(effect);
@@ -208,7 +208,7 @@ std::map<std::string, Vector2> places_in(const RecordingProblem& problem,
   return places;
 }
 
-FitState fit_recordings(const std::vector<Recording>& recordings, const Model& model,
+FitState fit_recordings(const std::vector<DrivenRecording>& recordings, const Model& model,
                         const FitterOptions& options) {
   const FitTask task{recordings, with_gyro(recordings, model.robot, model.noise),
                      resolved(model, recordings, options.free_common_errors), options};

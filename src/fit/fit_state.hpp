@@ -51,7 +51,7 @@ struct FitterOptions {
 struct FitState {
   Model model;  ///< with resolved effects and their coefficients
   std::vector<EffectEstimate> effects;
-  std::vector<Recording> recordings;  ///< as fitted: moved back by the delays
+  std::vector<DrivenRecording> recordings;  ///< as fitted: moved back by the delays
   RecordingProblem problem;
   ProblemOptions used;    ///< by which the problem was made; spans in the times of `recordings`
   EffectColumns columns;  ///< known effects held, the others free, at `coefficients`
@@ -63,8 +63,8 @@ struct FitState {
 
 /// Throws SolveError as adjust does (but not for coefficients), std::invalid_argument on effects
 /// that cannot be applied.
-[[nodiscard]] FitState fit_recordings(const std::vector<Recording>& recordings, const Model& model,
-                                      const FitterOptions& options = {});
+[[nodiscard]] FitState fit_recordings(const std::vector<DrivenRecording>& recordings,
+                                      const Model& model, const FitterOptions& options = {});
 
 [[nodiscard]] FitterOptions fitter_options(const FitOptions& options);
 
@@ -72,7 +72,7 @@ struct FitState {
 [[nodiscard]] ModelFit model_fit(FitState state, const FitOptions& options);
 
 /// Another model of the same recordings, by the same options, started from this fit.
-[[nodiscard]] ModelFit refit(const std::vector<Recording>& recordings, const Model& model,
+[[nodiscard]] ModelFit refit(const std::vector<DrivenRecording>& recordings, const Model& model,
                              const ModelFit& near);
 
 /// What the gate left out of it, in the user's words.

@@ -16,7 +16,7 @@ namespace {
 /// One session's rows under the effects.
 class Reckoner {
  public:
-  Reckoner(const Drive& drive, const Robot& robot, const EffectParameters& border,
+  Reckoner(const MotionRows& drive, const Robot& robot, const EffectParameters& border,
            const Eigen::VectorXd& offsets, int session)
       : drive_(drive), robot_(robot), border_(border), offsets_(offsets), session_(idx(session)) {}
 
@@ -36,7 +36,7 @@ class Reckoner {
     return drive_patterns(border_, session_);
   }
 
-  const Drive& drive_;
+  const MotionRows& drive_;
   const Robot& robot_;
   const EffectParameters& border_;
   const Eigen::VectorXd& offsets_;
@@ -46,7 +46,7 @@ class Reckoner {
 /// Travel and turn that each row lacks, as white noise of the wheels would have it that adds up to
 /// what the whole lacks: Q A' (sum A Q A')^-1 e, with A the row's influence and Q its share of
 /// noise.
-std::vector<Vector2> estimated_noise(const std::vector<SegmentRow>& rows, const Drive& drive,
+std::vector<Vector2> estimated_noise(const std::vector<SegmentRow>& rows, const MotionRows& drive,
                                      const Robot& robot, const std::vector<Matrix4>& influences,
                                      const Eigen::Vector3d& lacking) {
   constexpr double kLeastShare = 1e-6;  // m: rows at rest may err too
@@ -87,7 +87,7 @@ struct FittedRow {
 };
 
 /// The rows that lie between two nodes.
-std::vector<FittedRow> rows_between(const Drive& drive, const Robot& robot,
+std::vector<FittedRow> rows_between(const MotionRows& drive, const Robot& robot,
                                     const Reckoner& reckoner, const PoseNode& from,
                                     const Pose& at_from, const PoseNode& to, const Pose& at_to) {
   constexpr int kRounds = 3;  // the noise bends the path on which it acts
@@ -130,7 +130,7 @@ std::vector<FittedRow> rows_between(const Drive& drive, const Robot& robot,
 }
 
 /// Per row; empty without a gyro.
-std::vector<double> excesses(const Drive& drive,
+std::vector<double> excesses(const MotionRows& drive,
                              const std::vector<const std::vector<DrivePattern>*>& patterns,
                              const Eigen::VectorXd& offsets) {
   std::vector<double> result;
@@ -158,8 +158,8 @@ Pose before(const Pose& end, const Pose& motion) {
 
 }  // namespace
 
-std::vector<SessionPath> fitted_paths(const std::vector<Recording>& recordings, const Robot& robot,
-                                      const RecordingProblem& problem,
+std::vector<SessionPath> fitted_paths(const std::vector<DrivenRecording>& recordings,
+                                      const Robot& robot, const RecordingProblem& problem,
                                       const EffectParameters& border,
                                       const Eigen::VectorXd& offsets, const RecordingState& state) {
   std::vector<SessionPath> paths(recordings.size());
@@ -171,7 +171,7 @@ std::vector<SessionPath> fitted_paths(const std::vector<Recording>& recordings, 
     last[session] = static_cast<int>(k);
   }
   for (std::size_t s = 0; s < recordings.size(); ++s) {
-    const Drive& drive = recordings[s].drive;
+    const MotionRows& drive = recordings[s].drive;
     const Reckoner reckoner(drive, robot, border, offsets, static_cast<int>(s));
     SessionPath& path = paths[s];
     path.ends.resize(drive.rows());
@@ -207,7 +207,7 @@ std::vector<SessionPath> fitted_paths(const std::vector<Recording>& recordings, 
   return paths;
 }
 
-Pose pose_at(const Drive& drive, const SessionPath& path, double t) {
+Pose pose_at(const MotionRows& drive, const SessionPath& path, double t) {
   const std::size_t row = row_at(drive, t);
   const Pose& from = row == 0 ? path.start : path.ends[row - 1];
   const Pose& to = path.ends[row];

@@ -28,11 +28,14 @@ struct SessionPath {
 
 /// One path per session. `offsets` are the coefficients of the border less their references. Before
 /// the first node and after the last the robot is reckoned from there.
-[[nodiscard]] std::vector<SessionPath> fitted_paths(
-    const std::vector<Recording>& recordings, const Robot& robot, const RecordingProblem& problem,
-    const EffectParameters& border, const Eigen::VectorXd& offsets, const RecordingState& state);
+[[nodiscard]] std::vector<SessionPath> fitted_paths(const std::vector<DrivenRecording>& recordings,
+                                                    const Robot& robot,
+                                                    const RecordingProblem& problem,
+                                                    const EffectParameters& border,
+                                                    const Eigen::VectorXd& offsets,
+                                                    const RecordingState& state);
 
 /// The pose at time t, along the row.
-[[nodiscard]] Pose pose_at(const Drive& drive, const SessionPath& path, double t);
+[[nodiscard]] Pose pose_at(const MotionRows& drive, const SessionPath& path, double t);
 
 }  // namespace trussmap

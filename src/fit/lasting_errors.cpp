@@ -93,9 +93,10 @@ LastingErrors lasting_errors(const ModelFit& fit) {
   return result;
 }
 
-std::vector<Recording> thinned_frames(const std::vector<Recording>& recordings, double lasts) {
-  std::vector<Recording> result = recordings;
-  for (Recording& recording : result) {
+std::vector<DrivenRecording> thinned_frames(const std::vector<DrivenRecording>& recordings,
+                                            double lasts) {
+  std::vector<DrivenRecording> result = recordings;
+  for (DrivenRecording& recording : result) {
     double frame = -std::numeric_limits<double>::infinity();
     std::erase_if(recording.sightings, [&](const Sighting& one) {
       if (one.standing() || one.t - frame < kOneFrame) return false;
@@ -107,9 +108,9 @@ std::vector<Recording> thinned_frames(const std::vector<Recording>& recordings, 
   return result;
 }
 
-bool has_dense_frames(const std::vector<Recording>& recordings) {
+bool has_dense_frames(const std::vector<DrivenRecording>& recordings) {
   int pairs = 0;
-  for (const Recording& recording : recordings) {
+  for (const DrivenRecording& recording : recordings) {
     std::map<std::string, double> last;
     for (const Sighting& one : recording.sightings) {
       if (one.standing()) continue;

@@ -24,7 +24,7 @@ double square_of(const Matrix4& covariance) {
 
 /// A piece of a drive that is reckoned by the wheels.
 struct Window {
-  const Drive& drive;
+  const MotionRows& drive;
   const Robot& robot;
   std::vector<SegmentRow> rows;
   double from = 0.0;                ///< s
@@ -120,7 +120,7 @@ struct Stretch {
   double to = 0.0;
 };
 
-std::vector<Stretch> stretches(const Drive& drive, double horizon) {
+std::vector<Stretch> stretches(const MotionRows& drive, double horizon) {
   std::vector<Stretch> result;
   const double length = drive.t.back() - drive.start();
   const auto count = static_cast<std::size_t>(std::max(0.0, 2.0 * (length / horizon - 1.0) + 1.0));
@@ -138,8 +138,9 @@ std::vector<Stretch> legs(const std::vector<double>& ends) {
 }
 
 /// `horizon` 0: legs.
-void add_windows(const Recording& recording, const Robot& robot, double horizon, Budget& budget) {
-  const Drive& drive = recording.drive;
+void add_windows(const DrivenRecording& recording, const Robot& robot, double horizon,
+                 Budget& budget) {
+  const MotionRows& drive = recording.drive;
   if (drive.rows() == 0) return;
   const std::vector<double> ends = ends_of_legs(recording);
   const std::vector<Stretch> all = horizon > 0.0 ? stretches(drive, horizon) : legs(ends);
@@ -162,14 +163,14 @@ void add_windows(const Recording& recording, const Robot& robot, double horizon,
 
 }  // namespace
 
-std::vector<NoiseBudget> noise_budget(const std::vector<Recording>& recordings, const Model& model,
-                                      const std::vector<double>& horizons) {
+std::vector<NoiseBudget> noise_budget(const std::vector<DrivenRecording>& recordings,
+                                      const Model& model, const std::vector<double>& horizons) {
   std::vector<std::optional<NoiseBudget>> budgets(horizons.size());
   parallel_for(horizons.size(), [&](std::size_t k) {
     const double horizon = horizons[k];
     if (!(horizon >= 0.0)) throw std::invalid_argument("a horizon has to be 0 s (a leg) or more");
     Budget budget(model);
-    for (const Recording& one : recordings) add_windows(one, model.robot, horizon, budget);
+    for (const DrivenRecording& one : recordings) add_windows(one, model.robot, horizon, budget);
     if (!budget.empty()) budgets[k] = budget.take(horizon);
   });
   std::vector<NoiseBudget> result;

@@ -358,7 +358,7 @@ FittedNoise fit_noise(const ModelFit& fit, const NoiseFitOptions& options) {
   return fit_noise(reml, Eigen::MatrixXd(), options);
 }
 
-FitWithNoise fit_model_and_noise(const std::vector<Recording>& recordings, const Model& model,
+FitWithNoise fit_model_and_noise(const std::vector<DrivenRecording>& recordings, const Model& model,
                                  const FitOptions& fit, const NoiseFitOptions& options) {
   constexpr int kMostRounds = 3;
   FitWithNoise result{fit_model(recordings, model, fit), {}};

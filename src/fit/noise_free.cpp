@@ -60,7 +60,7 @@ EffectParameters border_as_fitted(const Model& model, const ShapeContext& contex
   return border;
 }
 
-NoiseFree::NoiseFree(const std::vector<Recording>& recordings, const Model& model,
+NoiseFree::NoiseFree(const std::vector<DrivenRecording>& recordings, const Model& model,
                      const RecordingProblem& fitted, const EffectParameters& fitted_border,
                      const Eigen::VectorXd& offsets, const RecordingState& fitted_state)
     : state(standing_exactly(fitted, fitted_border, offsets, fitted_state)),

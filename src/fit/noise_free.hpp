@@ -26,7 +26,7 @@ namespace trussmap {
 struct NoiseFree {
   /// `border` and the `offsets` of its coefficients are those of the fit. Keeps a reference to the
   /// recordings.
-  NoiseFree(const std::vector<Recording>& recordings, const Model& model,
+  NoiseFree(const std::vector<DrivenRecording>& recordings, const Model& model,
             const RecordingProblem& fitted, const EffectParameters& fitted_border,
             const Eigen::VectorXd& offsets, const RecordingState& fitted_state);
 

@@ -77,7 +77,7 @@ double deviance(NoiseReml& reml, const NoiseReml::Sizes& sizes) {
 
 NoiseExtents extents_of(const FitState& fit) {
   NoiseExtents extents;
-  for (const Recording& one : fit.recordings) {
+  for (const DrivenRecording& one : fit.recordings) {
     extents.time += one.drive.rows() > 0 ? one.drive.t.back() - one.drive.start() : 0.0;
   }
   for (const std::vector<SegmentRow>& rows : fit.problem.segments) {

@@ -51,7 +51,7 @@ Matrix4 NoiseReml::segment_covariance(const Measurement& one, const Noise& noise
                          noise.travel_per_s + noise.gyro >
                      0.0;
   if (!moves) return result;
-  const Drive& drive = fit_.recordings[idx(one.session)].drive;
+  const MotionRows& drive = fit_.recordings[idx(one.session)].drive;
   const std::vector<SegmentRow>& parts = fit_.problem.segments[one.source];
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const SegmentRow& row = parts[k];
@@ -64,7 +64,7 @@ Matrix4 NoiseReml::segment_covariance(const Measurement& one, const Noise& noise
 
 Matrix4 NoiseReml::gyro_covariance(const Measurement& one, const Noise& noise) const {
   Matrix4 result = Matrix4::Zero();
-  const Drive& drive = fit_.recordings[idx(one.session)].drive;
+  const MotionRows& drive = fit_.recordings[idx(one.session)].drive;
   const std::vector<SegmentRow>& rows = fit_.problem.segments[one.source];
   const std::vector<Vector4>& weights = fit_.problem.gyro_weights[one.source];
   for (std::size_t k = 0; k < rows.size(); ++k) {

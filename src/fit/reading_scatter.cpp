@@ -38,7 +38,7 @@ ReadingScatter::ReadingScatter(const FitState& fit) {
     const std::vector<SegmentRow>& rows = fit.problem.segments[one.source];
     if (readings_of(rows) < 3) continue;
     const std::size_t session = idx(one.session);
-    const Drive& drive = fit.recordings[session].drive;
+    const MotionRows& drive = fit.recordings[session].drive;
     if (!drive.gyro.empty() || !drive.wheels.empty()) continue;  // turns are not the wheels' alone
     const auto patterns = drive_patterns(fit.columns.border, session);
     const double start =

@@ -52,7 +52,7 @@ void draw_survey(std::size_t session, DrawnSurvey& drawn, Replica& replica, Norm
 }
 
 void draw_truth(std::size_t session, Replica& replica, NormalDraws& draw) {
-  Recording& recording = replica.timed[session];
+  DrivenRecording& recording = replica.timed[session];
   for (std::size_t row = 0; row < recording.truth.size(); ++row) {
     TruthRow& one = recording.truth[row];
     kinds::draw(one, pose_at(recording.drive, replica.paths[session], one.t),
@@ -63,7 +63,7 @@ void draw_truth(std::size_t session, Replica& replica, NormalDraws& draw) {
 
 void draw_fixes_and_loops(std::size_t session, Replica& replica, NormalDraws& draw) {
   const Noise& noise = replica.fit.model.noise;
-  Recording& recording = replica.timed[session];
+  DrivenRecording& recording = replica.timed[session];
   const auto pose = [&](double t) { return pose_at(recording.drive, replica.paths[session], t); };
   for (std::size_t row = 0; row < recording.fixes.size(); ++row) {
     Fix& one = recording.fixes[row];

@@ -30,7 +30,7 @@ double with_effects(double value, const Replica& replica,
 }
 
 /// Of other wheels than two: what their noise does to the body.
-void disturb_columns(std::size_t row, const Model& model, Drive& drive, NormalDraws& draw) {
+void disturb_columns(std::size_t row, const Model& model, MotionRows& drive, NormalDraws& draw) {
   const ArcNoise own = row_noise(drive, row, 1.0, drive.duration(row), model.robot, model.noise);
   Matrix3 Q;
   Q << own.along, own.along_aside, own.shared,        //
@@ -46,7 +46,7 @@ void disturb_columns(std::size_t row, const Model& model, Drive& drive, NormalDr
 }
 
 /// g of a process's channel, drawn for every row's end.
-std::vector<double> drawn_gains(const NoiseProcess& process, const Drive& drive,
+std::vector<double> drawn_gains(const NoiseProcess& process, const MotionRows& drive,
                                 const std::vector<double>& ends_of_legs, NormalDraws& draw) {
   const bool way = goes_with_distance(process.process);
   std::vector<double> g(drive.rows(), 0.0);
@@ -88,8 +88,8 @@ std::vector<double> drawn_gains(const NoiseProcess& process, const Drive& drive,
   return g;
 }
 
-void add_to_fixes(const NoiseProcess& process, const std::vector<double>& g, Recording& recording,
-                  NormalDraws& draw) {
+void add_to_fixes(const NoiseProcess& process, const std::vector<double>& g,
+                  DrivenRecording& recording, NormalDraws& draw) {
   for (Fix& one : recording.fixes) {
     const bool white = process.process == ProcessKind::white;
     const double value = white ? draw(process.sd) : g[row_at(recording.drive, one.t)];
@@ -98,7 +98,7 @@ void add_to_fixes(const NoiseProcess& process, const std::vector<double>& g, Rec
 }
 
 void add_to_sightings(const NoiseProcess& process, const std::vector<double>& g,
-                      Recording& recording, NormalDraws& draw) {
+                      DrivenRecording& recording, NormalDraws& draw) {
   struct Pass {
     double seen = 0.0;
     double value = 0.0;
@@ -122,7 +122,7 @@ void add_to_sightings(const NoiseProcess& process, const std::vector<double>& g,
 }  // namespace
 
 void part_wheels_and_gyro(std::size_t session, Replica& replica, NormalDraws& draw) {
-  Drive& drive = replica.timed[session].drive;
+  MotionRows& drive = replica.timed[session].drive;
   const auto patterns = drive_patterns(replica.border, session);
   const Robot& robot = replica.fit.model.robot;
   for (std::size_t row = 0; row < drive.gyro.size(); ++row) {
@@ -142,7 +142,7 @@ void part_wheels_and_gyro(std::size_t session, Replica& replica, NormalDraws& dr
 }
 
 void disturb_drive(std::size_t session, Replica& replica, NormalDraws& draw) {
-  Drive& drive = replica.timed[session].drive;
+  MotionRows& drive = replica.timed[session].drive;
   const Noise& noise = replica.fit.model.noise;
   const auto patterns = drive_patterns(replica.border, session);
   const Robot& robot = replica.fit.model.robot;
@@ -175,8 +175,8 @@ void add_process(const NoiseProcess& process, std::size_t session, Replica& repl
     throw std::invalid_argument("noise of channel \"" + std::string(name_of(process.channel)) +
                                 "\" cannot be drawn: no recording can hold it");
   }
-  Recording& recording = replica.timed[session];
-  Drive& drive = recording.drive;
+  DrivenRecording& recording = replica.timed[session];
+  MotionRows& drive = recording.drive;
   // Legs of the recording as it was: rests may be none any more.
   const std::vector<double> g =
       drawn_gains(process, drive, ends_of_legs(replica.fit.recordings[session]), draw);

@@ -17,8 +17,8 @@ namespace trussmap {
 struct Replica {
   const FitState& fit;
   Eigen::VectorXd offsets;
-  RecordingState state;          ///< without lasting noise; the robot misses landmarks
-  std::vector<Recording> timed;  ///< as fitted: moved back by the delays
+  RecordingState state;                ///< without lasting noise; the robot misses landmarks
+  std::vector<DrivenRecording> timed;  ///< as fitted: moved back by the delays
   std::vector<SessionPath> paths = {};
   EffectParameters border = {};
 };

@@ -101,7 +101,7 @@ void lead_through_poses(Replica& replica) {
     replica.paths = fitted_paths(replica.timed, robot, fit.problem, replica.border, replica.offsets,
                                  replica.state);
     for (std::size_t s = 0; s < replica.timed.size(); ++s) {
-      Drive& drive = replica.timed[s].drive;
+      MotionRows& drive = replica.timed[s].drive;
       for (std::size_t row = 0; row < drive.rows(); ++row) {
         Vector2& missing = replica.paths[s].missing[row];
         // Who rests goes on resting; the other rows take its share in the next round.
@@ -116,9 +116,9 @@ void lead_through_poses(Replica& replica) {
 
 /// Events at their own times, in the order in which a fit of the session sees them.
 template <typename Event>
-void take_events(const std::vector<Recording>& recordings, std::size_t s, const Model& model,
+void take_events(const std::vector<DrivenRecording>& recordings, std::size_t s, const Model& model,
                  Channel delay, const std::vector<Event>& timed, std::vector<Event>& own) {
-  const Recording& recording = recordings[s];
+  const DrivenRecording& recording = recordings[s];
   std::vector<double> instants;
   instants.reserve(own.size());
   for (const Event& one : own) instants.push_back(one.t);
@@ -140,11 +140,12 @@ void take_events(const std::vector<Recording>& recordings, std::size_t s, const 
 
 /// Delays back in their places: a fit moves what was sighted to when it was seen. Steering as it
 /// was read: a fit takes its effects in before all else.
-std::vector<Recording> in_own_times(std::vector<Recording> recordings, Replica&& replica) {
+std::vector<DrivenRecording> in_own_times(std::vector<DrivenRecording> recordings,
+                                          Replica&& replica) {
   const Model& model = replica.fit.model;
   for (std::size_t s = 0; s < recordings.size(); ++s) {
-    Recording& own = recordings[s];
-    Recording& timed = replica.timed[s];
+    DrivenRecording& own = recordings[s];
+    DrivenRecording& timed = replica.timed[s];
     take_events(recordings, s, model, Channel::delay, timed.sightings, own.sightings);
     take_events(recordings, s, model, Channel::delay, timed.truth, own.truth);
     take_events(recordings, s, model, Channel::fix_delay, timed.fixes, own.fixes);
@@ -159,8 +160,8 @@ std::vector<Recording> in_own_times(std::vector<Recording> recordings, Replica&&
 
 }  // namespace
 
-std::vector<Recording> replicated(const std::vector<Recording>& recordings, const FitState& fit,
-                                  std::uint64_t seed) {
+std::vector<DrivenRecording> replicated(const std::vector<DrivenRecording>& recordings,
+                                        const FitState& fit, std::uint64_t seed) {
   NormalDraws draw{std::mt19937_64(seed)};
   Replica replica{fit, offsets_of(fit), fit.adjustment.state, fit.recordings};
   replica.state.noise.resize(0);

@@ -21,7 +21,7 @@ namespace trussmap {
 /// `recordings` are those that were fitted. What the fit left out is drawn like all else. Throws
 /// std::invalid_argument where a process acts on a channel that no recording can hold (creep,
 /// lever, lever_left, delay, truth_heading). The same seed gives the same.
-[[nodiscard]] std::vector<Recording> replicated(const std::vector<Recording>& recordings,
-                                                const FitState& fit, std::uint64_t seed);
+[[nodiscard]] std::vector<DrivenRecording> replicated(
+    const std::vector<DrivenRecording>& recordings, const FitState& fit, std::uint64_t seed);
 
 }  // namespace trussmap

@@ -24,7 +24,8 @@ Matrix3 turned(const Matrix3& covariance, double angle) {
 }
 
 /// The wheels' motion in a row, or the part of it between two times, with the model's noise.
-Motion row_motion(const Drive& drive, std::size_t row, double from, double to, const Model& model) {
+Motion row_motion(const MotionRows& drive, std::size_t row, double from, double to,
+                  const Model& model) {
   const double begin = row == 0 ? drive.start() : drive.t[row - 1];
   const double part = (to - from) / (drive.t[row] - begin);
   return {displacement_of(body_motion({part * drive.left[row], part * drive.right[row]},
@@ -122,18 +123,18 @@ class AdjustedSession {
   }
 
   const FitState& fit_;
-  const Drive& drive_;
+  const MotionRows& drive_;
   const SessionPath& path_;
-  Drive wheels_;  ///< freed from the effects
+  MotionRows wheels_;  ///< freed from the effects
   std::vector<TimedPose> nodes_;
   std::vector<TimedPose> result_;
 };
 
 }  // namespace
 
-std::vector<TimedPose> dead_reckoned_poses(const Recording& recording, const Model& model) {
+std::vector<TimedPose> dead_reckoned_poses(const DrivenRecording& recording, const Model& model) {
   const ClearedRecording clear = std::move(cleared({recording}, model).front());
-  const Drive& drive = clear.recording.drive;
+  const MotionRows& drive = clear.recording.drive;
   const InitialHeading first = initial_heading(drive, drive.start(), model.robot, model.noise);
   std::vector<TimedPose> result;
   result.reserve(drive.rows() + 1);

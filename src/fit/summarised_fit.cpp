@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "drive/well_formed.hpp"
 #include "estimation/student_tails.hpp"
 #include "estimation/summarised_sessions.hpp"
 #include "fit/fit_state.hpp"
-#include "recording/well_formed.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/fit_model.hpp"
@@ -63,7 +63,7 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
     }
   }
 
-  void add(const Recording& recording) {
+  void add(const DrivenRecording& recording) {
     require_well_formed(recording);
     if (recording.sightings.empty()) {
       throw InputError(recording.name, 0,
@@ -141,7 +141,7 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
   }
 
  private:
-  [[nodiscard]] FitState fit_first(const Recording& recording) const {
+  [[nodiscard]] FitState fit_first(const DrivenRecording& recording) const {
     FitterOptions how = fitter_options(options_.fit);
     how.landmark_uncertainties = false;
     how.paths = false;
@@ -156,8 +156,8 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
   }
 
   /// On the map, which counts as a survey of its uncertainty, by the coefficients found so far.
-  [[nodiscard]] FitState fit_further(const Recording& recording) const {
-    Recording laid = recording;
+  [[nodiscard]] FitState fit_further(const DrivenRecording& recording) const {
+    DrivenRecording laid = recording;
     if (!options_.fit.use_survey) laid.survey.clear();
     std::erase_if(laid.survey,
                   [&](const SurveyPoint& point) { return sessions_.has(point.landmark); });
@@ -179,7 +179,7 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
 
   /// A further session may only give a position or a direction where the first one did: what is
   /// held in place of them would contradict it.
-  void require_frame(const Recording& recording) const {
+  void require_frame(const DrivenRecording& recording) const {
     if (frame_.position && frame_.direction) return;
     const FitOptions& use = options_.fit;
     const News surveyed = news_of_survey(recording);
@@ -201,7 +201,7 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
     bool heading = false;  ///< likewise of one whose yaw was read
   };
 
-  [[nodiscard]] News news_of_survey(const Recording& recording) const {
+  [[nodiscard]] News news_of_survey(const DrivenRecording& recording) const {
     News news;
     if (!options_.fit.use_survey) return news;
     const auto hear = [&](const SurveyPoint& point) {
@@ -224,7 +224,7 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
     return news;
   }
 
-  [[nodiscard]] std::vector<KnownPlace> known_of(const Recording& recording) const {
+  [[nodiscard]] std::vector<KnownPlace> known_of(const DrivenRecording& recording) const {
     std::vector<KnownPlace> known;
     if (!options_.fit.use_survey) return known;
     for (const SurveyPoint& one : recording.survey) {
@@ -258,8 +258,12 @@ SummarisedFit::~SummarisedFit() = default;
 SummarisedFit::SummarisedFit(SummarisedFit&&) noexcept = default;
 SummarisedFit& SummarisedFit::operator=(SummarisedFit&&) noexcept = default;
 
-void SummarisedFit::add(const Recording& recording) {
+void SummarisedFit::add(const DrivenRecording& recording) {
   impl_->add(recording);
+}
+
+void SummarisedFit::add(const Recording& recording) {
+  impl_->add(with_wheels(recording, model().robot));
 }
 
 int SummarisedFit::sessions() const {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/candidates.hpp"
 #include "criticism/score_test.hpp"
+#include "drive/well_formed.hpp"
 #include "fit/fit_state.hpp"
-#include "recording/well_formed.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/fleet.hpp"
 
@@ -21,7 +21,7 @@ namespace {
 constexpr double kStillOffset = 1e-7;
 
 /// Coefficients as the model states them: the same reference for every robot.
-ModelFit fit_at_reference(const std::vector<Recording>& recordings, const Model& model,
+ModelFit fit_at_reference(const std::vector<DrivenRecording>& recordings, const Model& model,
                           const FitOptions& options) {
   require_well_formed(recordings);
   FitterOptions how = fitter_options(options);
@@ -75,7 +75,7 @@ int day_number(const std::string& date) {
 }
 
 FleetRow fleet_row(const std::string& robot, const std::string& date,
-                   const std::vector<Recording>& recordings, const Model& model,
+                   const std::vector<DrivenRecording>& recordings, const Model& model,
                    const std::string& model_text, const FitOptions& fit, const LegOptions& legs) {
   static_cast<void>(day_number(date));
   for (const Effect& one : model.effects) {

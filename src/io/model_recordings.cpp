@@ -14,7 +14,7 @@ Model read_model(const std::filesystem::path& file, const std::vector<Recording>
   if (model.effects.empty()) return model;
   std::vector<SessionPath> paths;
   paths.reserve(recordings.size());
-  std::vector<Recording> driven;
+  std::vector<DrivenRecording> driven;
   driven.reserve(recordings.size());
   for (const Recording& recording : recordings) {
     driven.push_back(with_wheels(recording, model.robot));

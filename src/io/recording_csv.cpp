@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "drive/well_formed.hpp"
 #include "geometry/index.hpp"
 #include "io/csv.hpp"
 #include "io/recording_streams.hpp"
 #include "recording/variable_names.hpp"
-#include "recording/well_formed.hpp"
 #include "text/plain_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"

@@ -21,7 +21,7 @@ std::string drive_text(const Drive& drive, const std::string& comment) {
     text += "# " + comment.substr(at, end - at) + '\n';
     at = end + 1;
   }
-  const bool two = drive.wheels.empty() && !drive.left.empty();
+  const bool two = !drive.left.empty();
   text += two ? "t,left,right" : "t";
   if (drive.has_compass()) text += ",heading";
   if (drive.has_gyro()) text += ",yaw_rate";
@@ -30,7 +30,7 @@ std::string drive_text(const Drive& drive, const std::string& comment) {
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     text += csv_number(drive.t[row]);
     if (two) {
-      text += ',' + csv_number(drive.wheel_left(row)) + ',' + csv_number(drive.wheel_right(row));
+      text += ',' + csv_number(drive.left[row]) + ',' + csv_number(drive.right[row]);
     }
     if (drive.has_compass()) text += ',' + csv_number(drive.heading[row]);
     if (drive.has_gyro()) text += ',' + csv_number(drive.yaw_rate[row]);

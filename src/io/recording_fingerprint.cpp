@@ -27,19 +27,7 @@ class Hash {
   FnvHash hash_;
 };
 
-}  // namespace
-
-std::string fingerprint(const Recording& recording) {
-  Hash hash;
-  const Drive& drive = recording.drive;
-  hash.take(drive.t);
-  if (drive.wheels.empty()) {
-    hash.take(drive.left);
-    hash.take(drive.right);
-  }
-  hash.take(drive.heading);
-  for (const WheelColumn& one : drive.wheels) hash.take(one.reading);
-  if (drive.has_gyro()) hash.take(drive.yaw_rate);
+void take(const Observations& recording, Hash& hash) {
   for (const Sighting& one : recording.sightings) {
     hash.take(one.landmark);
     hash.take({one.t, one.range, one.bearing});
@@ -48,6 +36,34 @@ std::string fingerprint(const Recording& recording) {
   for (const Loop& one : recording.loops) {
     hash.take({one.t, one.t2, one.dx, one.dy, one.dtheta, one.sd, one.sd_heading});
   }
+}
+
+}  // namespace
+
+std::string fingerprint(const Recording& recording) {
+  Hash hash;
+  const Drive& drive = recording.drive;
+  hash.take(drive.t);
+  hash.take(drive.left);
+  hash.take(drive.right);
+  hash.take(drive.heading);
+  if (drive.has_gyro()) hash.take(drive.yaw_rate);
+  take(recording, hash);
+  return hash.digits();
+}
+
+std::string fingerprint(const DrivenRecording& recording) {
+  Hash hash;
+  const MotionRows& drive = recording.drive;
+  hash.take(drive.t);
+  if (drive.wheels.empty()) {
+    hash.take(drive.left);
+    hash.take(drive.right);
+  }
+  hash.take(drive.heading);
+  for (const WheelColumn& one : drive.wheels) hash.take(one.reading);
+  if (drive.has_gyro()) hash.take(drive.yaw_rate);
+  take(recording, hash);
   return hash.digits();
 }
 

@@ -39,9 +39,9 @@ Kind kind_named(const std::string& name, const std::string& file) {
       "no step is of the kind \"" + name + "\", expected given, add, remove, exclude or include");
 }
 
-ordered_json fingerprints_of(const std::vector<Recording>& recordings) {
+ordered_json fingerprints_of(const std::vector<DrivenRecording>& recordings) {
   ordered_json list = ordered_json::array();
-  for (const Recording& one : recordings) list.push_back(fingerprint(one));
+  for (const DrivenRecording& one : recordings) list.push_back(fingerprint(one));
   return list;
 }
 
@@ -120,7 +120,7 @@ WorkbenchStep step_of(const ordered_json& json, std::size_t number, std::size_t 
 }  // namespace
 
 std::string format_workbench_log(const WorkbenchLog& log,
-                                 const std::vector<Recording>& recordings) {
+                                 const std::vector<DrivenRecording>& recordings) {
   ordered_json steps = ordered_json::array();
   for (const WorkbenchStep& step : log.steps) steps.push_back(json(step));
   const ordered_json whole = {{"format", kFormat},
@@ -131,7 +131,7 @@ std::string format_workbench_log(const WorkbenchLog& log,
 }
 
 WorkbenchLog read_workbench_log(const std::filesystem::path& path,
-                                const std::vector<Recording>& recordings) {
+                                const std::vector<DrivenRecording>& recordings) {
   const std::string file = path.string();
   try {
     const ordered_json whole = ordered_json::parse(read_file(path));

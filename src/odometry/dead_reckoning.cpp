@@ -15,8 +15,8 @@ namespace trussmap {
 namespace {
 
 /// Nothing where two wheels' alone is meant.
-std::optional<ArcNoise> noise_of_row(const Drive& drive, const DriveRow& row, const Robot& robot,
-                                     const Noise& noise) {
+std::optional<ArcNoise> noise_of_row(const MotionRows& drive, const DriveRow& row,
+                                     const Robot& robot, const Noise& noise) {
   if (drive.gyro.empty() && drive.wheels.empty()) return std::nullopt;
   return row_noise(drive, row.row, row.part, row.duration, robot, noise);
 }
@@ -50,7 +50,7 @@ LandmarkOffset landmark_offset(const Sighting& sighting, const Noise& noise) {
   return {sighting.range * R.col(0), R * Vector2(along, across).asDiagonal() * R.transpose()};
 }
 
-InitialHeading initial_heading(const Drive& drive, double t, const Robot& robot,
+InitialHeading initial_heading(const MotionRows& drive, double t, const Robot& robot,
                                const Noise& noise) {
   double turn = 0.0;
   double variance = 0.0;
@@ -80,7 +80,7 @@ PoseEstimate pose_from_landmark(const HeadingEstimate& heading, const LandmarkOf
   return robot;
 }
 
-PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double from, double to,
+PoseEstimate dead_reckon(const PoseEstimate& start, const MotionRows& drive, double from, double to,
                          const Robot& robot, const Noise& noise, double readings_used_until,
                          const std::vector<double>& slip) {
   if (drive.has_gyro() && drive.gyro.empty()) {
@@ -117,7 +117,7 @@ PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double f
   return estimate;
 }
 
-std::vector<PoseEstimate> dead_reckoned_estimates(const Drive& drive, const Robot& robot,
+std::vector<PoseEstimate> dead_reckoned_estimates(const MotionRows& drive, const Robot& robot,
                                                   const Noise& noise,
                                                   const std::vector<double>& slip) {
   if (drive.has_gyro() && drive.gyro.empty()) {
@@ -144,8 +144,8 @@ std::vector<PoseEstimate> dead_reckoned_estimates(const Drive& drive, const Robo
   return result;
 }
 
-std::vector<Pose> dead_reckoned_path(const Drive& drive, const Robot& robot, const Noise& noise,
-                                     const std::vector<double>& slip) {
+std::vector<Pose> dead_reckoned_path(const MotionRows& drive, const Robot& robot,
+                                     const Noise& noise, const std::vector<double>& slip) {
   std::vector<Pose> path;
   path.reserve(drive.rows());
   for (const PoseEstimate& one : dead_reckoned_estimates(drive, robot, noise, slip)) {

@@ -8,7 +8,7 @@
 namespace trussmap {
 namespace {
 
-Pose start_pose(const Drive& drive, const Model& model) {
+Pose start_pose(const MotionRows& drive, const Model& model) {
   Pose pose;
   pose.heading = initial_heading(drive, drive.start(), model.robot, model.noise).heading.heading;
   return pose;
@@ -16,12 +16,12 @@ Pose start_pose(const Drive& drive, const Model& model) {
 
 }  // namespace
 
-std::vector<Recording> without_effects(const std::vector<Recording>& recordings,
-                                       const Model& model) {
-  std::vector<Recording> result;
-  for (const Recording& recording : recordings) {
+std::vector<DrivenRecording> without_effects(const std::vector<DrivenRecording>& recordings,
+                                             const Model& model) {
+  std::vector<DrivenRecording> result;
+  for (const DrivenRecording& recording : recordings) {
     const int session = static_cast<int>(result.size());
-    Recording corrected = recording;
+    DrivenRecording corrected = recording;
     for (int pass = 0; pass < 2; ++pass) {
       const std::vector<Pose> path = dead_reckoned_path(corrected.drive, model.robot, model.noise);
       corrected =

@@ -14,7 +14,7 @@ namespace trussmap {
 /// Each recording as corrected_recording.hpp makes it. Shapes that speak of heading, x or y see the
 /// dead-reckoned path of the corrected recording itself, which two passes give. Throws
 /// std::invalid_argument as corrected_recording does.
-[[nodiscard]] std::vector<Recording> without_effects(const std::vector<Recording>& recordings,
-                                                     const Model& model);
+[[nodiscard]] std::vector<DrivenRecording> without_effects(
+    const std::vector<DrivenRecording>& recordings, const Model& model);
 
 }  // namespace trussmap

@@ -46,7 +46,7 @@ bool same_arc(const DriveArc& arc, const WheelTravel& row, const WheelNoise& noi
 
 }  // namespace
 
-std::vector<DriveRow> rows_between(const Drive& drive, double from, double to) {
+std::vector<DriveRow> rows_between(const MotionRows& drive, double from, double to) {
   std::vector<DriveRow> rows;
   const auto first = std::upper_bound(drive.t.begin(), drive.t.end(), from) - drive.t.begin();
   for (auto row = static_cast<std::size_t>(first); row < drive.rows(); ++row) {
@@ -59,7 +59,7 @@ std::vector<DriveRow> rows_between(const Drive& drive, double from, double to) {
   return rows;
 }
 
-WheelTravel travel_of(const Drive& drive, const DriveRow& row) {
+WheelTravel travel_of(const MotionRows& drive, const DriveRow& row) {
   return {row.part * drive.left[row.row], row.part * drive.right[row.row]};
 }
 
@@ -89,7 +89,7 @@ bool GrowingArc::take(const WheelTravel& travel, double duration, double wheelba
   return !joins;
 }
 
-std::vector<DriveArc> merge_rows(const Drive& drive, const std::vector<DriveRow>& rows,
+std::vector<DriveArc> merge_rows(const MotionRows& drive, const std::vector<DriveRow>& rows,
                                  double wheelbase, const WheelNoise& noise) {
   std::vector<DriveArc> arcs;
   GrowingArc last;

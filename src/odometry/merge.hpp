@@ -37,9 +37,9 @@ struct DriveRow {
 
 /// The rows between two times, first and last cut to fit. `from` <= `to`; times outside of the
 /// drive are cut to it.
-[[nodiscard]] std::vector<DriveRow> rows_between(const Drive& drive, double from, double to);
+[[nodiscard]] std::vector<DriveRow> rows_between(const MotionRows& drive, double from, double to);
 
-[[nodiscard]] WheelTravel travel_of(const Drive& drive, const DriveRow& row);
+[[nodiscard]] WheelTravel travel_of(const MotionRows& drive, const DriveRow& row);
 
 /// An arc as rows join it, one after the other.
 class GrowingArc {
@@ -58,7 +58,7 @@ class GrowingArc {
 };
 
 /// The arcs of these rows, in order.
-[[nodiscard]] std::vector<DriveArc> merge_rows(const Drive& drive,
+[[nodiscard]] std::vector<DriveArc> merge_rows(const MotionRows& drive,
                                                const std::vector<DriveRow>& rows, double wheelbase,
                                                const WheelNoise& noise);
 

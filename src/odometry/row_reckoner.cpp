@@ -39,7 +39,7 @@ Pose displacement_of(const BodyMotion& motion) {
   return slanting_displacement({motion.forward, motion.sideways}, motion.turn);
 }
 
-Matrix3 row_covariance(const Drive& drive, std::size_t row, double part, double duration,
+Matrix3 row_covariance(const MotionRows& drive, std::size_t row, double part, double duration,
                        const Robot& robot, const Noise& noise) {
   const WheelTravel travel{part * drive.left[row], part * drive.right[row]};
   if (drive.gyro.empty() && drive.wheels.empty()) {

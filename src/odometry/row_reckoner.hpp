@@ -22,7 +22,7 @@ namespace trussmap {
 [[nodiscard]] Pose displacement_of(const BodyMotion& motion);
 /// What its end is unsure by, as arc_covariance, of a row or the part of it that lasts `duration`
 /// s.
-[[nodiscard]] Matrix3 row_covariance(const Drive& drive, std::size_t row, double part,
+[[nodiscard]] Matrix3 row_covariance(const MotionRows& drive, std::size_t row, double part,
                                      double duration, const Robot& robot, const Noise& noise);
 
 /// Variance of a single compass reading, rad^2: white noise and what lasts.

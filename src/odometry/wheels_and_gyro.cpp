@@ -18,13 +18,13 @@ double gyro_variance(const Noise& noise, double duration) {
 
 /// As both say: of the wheels alone, rows that err towards a larger turn would count less than
 /// those that err the other way, and all turns seem larger than the wheels say.
-WheelTravel wheels_of(const Drive& drive, std::size_t row, double part) {
+WheelTravel wheels_of(const MotionRows& drive, std::size_t row, double part) {
   return {part * drive.left[row], part * drive.right[row]};
 }
 
 /// Each wheel's noise, and that of the steering, as it moves the body; with what the model knows
 /// besides.
-ArcNoise columns_noise(const Drive& drive, std::size_t row, double part, double duration,
+ArcNoise columns_noise(const MotionRows& drive, std::size_t row, double part, double duration,
                        const Robot& robot, const Noise& noise) {
   const double k2 = 0.5 * (noise.left * noise.left + noise.right * noise.right);
   Matrix3 Q = Matrix3::Zero();
@@ -47,7 +47,7 @@ ArcNoise columns_noise(const Drive& drive, std::size_t row, double part, double 
 }
 
 /// Of the wheels, without the gyro.
-ArcNoise wheels_noise(const Drive& drive, std::size_t row, double part, double duration,
+ArcNoise wheels_noise(const MotionRows& drive, std::size_t row, double part, double duration,
                       const Robot& robot, const Noise& noise) {
   return drive.wheels.empty() ? arc_noise(wheels_of(drive, row, part), duration, robot, noise)
                               : columns_noise(drive, row, part, duration, robot, noise);
@@ -79,7 +79,7 @@ GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration
   return share;
 }
 
-GyroShare gyro_share(const Drive& drive, std::size_t row, double yaw_rate, double duration,
+GyroShare gyro_share(const MotionRows& drive, std::size_t row, double yaw_rate, double duration,
                      const Robot& robot, const Noise& noise) {
   GyroShare share = gyro_share(wheels_of(drive, row, 1.0), yaw_rate, duration, robot, noise,
                                wheels_noise(drive, row, 1.0, duration, robot, noise));
@@ -110,8 +110,8 @@ ArcNoise noise_together(const GyroShare& share, const ArcNoise& wheels, double d
           kept * (wheels.heading_aside - aside * wheels.heading) + share.turn * aside * r};
 }
 
-Drive with_gyro(const Drive& drive, const Robot& robot, const Noise& noise) {
-  Drive result = drive;
+MotionRows with_gyro(const MotionRows& drive, const Robot& robot, const Noise& noise) {
+  MotionRows result = drive;
   if (!drive.has_gyro() || !drive.gyro.empty()) return result;
   result.gyro.reserve(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
@@ -126,27 +126,27 @@ Drive with_gyro(const Drive& drive, const Robot& robot, const Noise& noise) {
   return result;
 }
 
-std::vector<Recording> with_gyro(const std::vector<Recording>& recordings, const Robot& robot,
-                                 const Noise& noise) {
-  std::vector<Recording> result = recordings;
-  for (Recording& one : result) {
+std::vector<DrivenRecording> with_gyro(const std::vector<DrivenRecording>& recordings,
+                                       const Robot& robot, const Noise& noise) {
+  std::vector<DrivenRecording> result = recordings;
+  for (DrivenRecording& one : result) {
     if (one.drive.has_gyro()) one.drive = with_gyro(one.drive, robot, noise);
   }
   return result;
 }
 
-bool has_gyro(const std::vector<Recording>& recordings) {
+bool has_gyro(const std::vector<DrivenRecording>& recordings) {
   return std::any_of(recordings.begin(), recordings.end(),
-                     [](const Recording& one) { return one.drive.has_gyro(); });
+                     [](const DrivenRecording& one) { return one.drive.has_gyro(); });
 }
 
-ArcNoise row_noise(const Drive& drive, std::size_t row, double part, double duration,
+ArcNoise row_noise(const MotionRows& drive, std::size_t row, double part, double duration,
                    const Robot& robot, const Noise& noise) {
   const ArcNoise wheels = wheels_noise(drive, row, part, duration, robot, noise);
   return drive.gyro.empty() ? wheels : noise_together(drive.gyro[row], wheels, duration, noise);
 }
 
-double excess_variance(const Drive& drive, std::size_t row, double part, double duration,
+double excess_variance(const MotionRows& drive, std::size_t row, double part, double duration,
                        const Robot& robot, const Noise& noise) {
   if (drive.gyro.empty() || !std::isfinite(drive.gyro[row].variance)) {
     return std::numeric_limits<double>::infinity();

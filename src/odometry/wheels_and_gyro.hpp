@@ -35,7 +35,7 @@ namespace trussmap {
                                    const ArcNoise& of_wheels);
 /// The same of a drive's row, of two wheels or others, that lasts `duration` s and has this yaw
 /// rate.
-[[nodiscard]] GyroShare gyro_share(const Drive& drive, std::size_t row, double yaw_rate,
+[[nodiscard]] GyroShare gyro_share(const MotionRows& drive, std::size_t row, double yaw_rate,
                                    double duration, const Robot& robot, const Noise& noise);
 /// s', as wheel travels that lead along it.
 [[nodiscard]] WheelTravel together(const GyroShare& share, const Robot& robot);
@@ -45,18 +45,18 @@ namespace trussmap {
 
 /// The drive with its gyro taken in, so that `left` and `right` lead along s'. Unchanged where
 /// there is no gyro, or where it has been taken in before.
-[[nodiscard]] Drive with_gyro(const Drive& drive, const Robot& robot, const Noise& noise);
-[[nodiscard]] std::vector<Recording> with_gyro(const std::vector<Recording>& recordings,
-                                               const Robot& robot, const Noise& noise);
-[[nodiscard]] bool has_gyro(const std::vector<Recording>& recordings);
+[[nodiscard]] MotionRows with_gyro(const MotionRows& drive, const Robot& robot, const Noise& noise);
+[[nodiscard]] std::vector<DrivenRecording> with_gyro(const std::vector<DrivenRecording>& recordings,
+                                                     const Robot& robot, const Noise& noise);
+[[nodiscard]] bool has_gyro(const std::vector<DrivenRecording>& recordings);
 
 /// Where the noise of a row's motion, or of a part of it that lasts `duration` s, comes from: of
 /// the wheels, and of the gyro that was taken in.
-[[nodiscard]] ArcNoise row_noise(const Drive& drive, std::size_t row, double part, double duration,
-                                 const Robot& robot, const Noise& noise);
+[[nodiscard]] ArcNoise row_noise(const MotionRows& drive, std::size_t row, double part,
+                                 double duration, const Robot& robot, const Noise& noise);
 
 /// Variance of a row's excess, or of a part of it, rad^2. Infinite without a reading.
-[[nodiscard]] double excess_variance(const Drive& drive, std::size_t row, double part,
+[[nodiscard]] double excess_variance(const MotionRows& drive, std::size_t row, double part,
                                      double duration, const Robot& robot, const Noise& noise);
 
 }  // namespace trussmap

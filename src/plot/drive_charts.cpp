@@ -212,13 +212,13 @@ ChartLayer share_layer(const std::string& name, const std::string& colour, const
 
 }  // namespace
 
-std::optional<Steering> steering_of(const std::vector<Recording>& recordings) {
+std::optional<Steering> steering_of(const std::vector<DrivenRecording>& recordings) {
   constexpr int kClasses = 40;
   Shares shares;
   Range angles{1e9, -1e9};
   double way = 0.0;
   const auto each_row = [&](const auto& take) {
-    for (const Recording& one : recordings) {
+    for (const DrivenRecording& one : recordings) {
       const std::vector<WheelColumn>& wheels = one.drive.wheels;
       if (wheels.size() != 2 || !wheels[1].steers) continue;
       for (std::size_t row = 0; row < one.drive.rows(); ++row) {

@@ -26,6 +26,6 @@ struct Steering {
   Range angles;  ///< rad, as far as it steered as it moved
   Chart chart;
 };
-[[nodiscard]] std::optional<Steering> steering_of(const std::vector<Recording>& recordings);
+[[nodiscard]] std::optional<Steering> steering_of(const std::vector<DrivenRecording>& recordings);
 
 }  // namespace trussmap

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "plot/time_strips.hpp"
 
-#include "recording/elapsed_time.hpp"
+#include "drive/elapsed_time.hpp"
 #include "recording/time_spans.hpp"
 #include "wording/channel_words.hpp"
 
@@ -20,23 +20,23 @@ constexpr double kPoints = 600.0;  // in all
 constexpr std::size_t kMostStrips = 5;
 
 /// A value of a row with how long the row took; none where there is nothing to show.
-using RowValue = std::function<double(const Drive& drive, std::size_t row)>;
-using RowValues = std::function<std::optional<RowValue>(const Recording&)>;
+using RowValue = std::function<double(const MotionRows& drive, std::size_t row)>;
+using RowValues = std::function<std::optional<RowValue>(const DrivenRecording&)>;
 
 struct Strip {
   std::vector<double> t;
   std::vector<double> value;
 };
 
-Strip strip_of(const std::vector<Recording>& recordings, const RowValues& values) {
+Strip strip_of(const std::vector<DrivenRecording>& recordings, const RowValues& values) {
   const std::vector<double> shifts = elapsed_shifts(recordings);
-  const Drive& last = recordings.back().drive;
+  const MotionRows& last = recordings.back().drive;
   const double whole = last.rows() > 0 ? last.t.back() + shifts.back() : shifts.back();
   const double share = std::max(whole / kPoints, 1e-9);
   Strip strip;
   for (std::size_t s = 0; s < recordings.size(); ++s) {
-    const Recording& recording = recordings[s];
-    const Drive& drive = recording.drive;
+    const DrivenRecording& recording = recordings[s];
+    const MotionRows& drive = recording.drive;
     const std::optional<RowValue> value = values(recording);
     double sum = 0.0, time = 0.0;
     for (std::size_t row = 0; value && row < drive.rows(); ++row) {
@@ -110,7 +110,8 @@ bool varies(const Strip& strip) {
   return most > least;
 }
 
-std::optional<std::size_t> place_of(const Recording& recording, const std::string& covariate) {
+std::optional<std::size_t> place_of(const DrivenRecording& recording,
+                                    const std::string& covariate) {
   const auto& all = recording.drive.covariates;
   const auto found = std::find_if(all.begin(), all.end(),
                                   [&](const Covariate& one) { return one.name == covariate; });
@@ -120,26 +121,27 @@ std::optional<std::size_t> place_of(const Recording& recording, const std::strin
 
 }  // namespace
 
-std::vector<Chart> time_strips(const std::vector<Recording>& recordings,
+std::vector<Chart> time_strips(const std::vector<DrivenRecording>& recordings,
                                const MarkedTimes& marked) {
   std::vector<Chart> strips;
   if (recordings.empty()) return strips;
-  const auto speed = [](const Drive& drive, std::size_t row) {
+  const auto speed = [](const MotionRows& drive, std::size_t row) {
     return 0.5 * (drive.left[row] + drive.right[row]) / drive.duration(row);
   };
   strips.push_back(chart_of(
       "strip-speed", "speed [m/s]",
-      strip_of(recordings, [&speed](const Recording&) { return RowValue(speed); }), marked));
+      strip_of(recordings, [&speed](const DrivenRecording&) { return RowValue(speed); }), marked));
   for (const Covariate& one : recordings.front().drive.covariates) {
     if (strips.size() == kMostStrips) break;
-    const bool everywhere = std::all_of(
-        recordings.begin(), recordings.end(),
-        [&one](const Recording& recording) { return place_of(recording, one.name).has_value(); });
+    const bool everywhere =
+        std::all_of(recordings.begin(), recordings.end(), [&one](const DrivenRecording& recording) {
+          return place_of(recording, one.name).has_value();
+        });
     if (!everywhere) continue;
-    Strip strip = strip_of(recordings, [&one](const Recording& recording) {
+    Strip strip = strip_of(recordings, [&one](const DrivenRecording& recording) {
       const std::vector<double>& values =
           recording.drive.covariates[*place_of(recording, one.name)].values;
-      return RowValue([&values](const Drive&, std::size_t row) { return values[row]; });
+      return RowValue([&values](const MotionRows&, std::size_t row) { return values[row]; });
     });
     if (!varies(strip)) continue;
     strips.push_back(chart_of("strip-" + std::to_string(strips.size()), variable_in_words(one.name),

@@ -19,7 +19,7 @@ struct MarkedTimes {
 
 /// Sessions one after the other; a point is the mean over its share of the time. Covariates that
 /// all sessions have and that vary, the first few.
-[[nodiscard]] std::vector<Chart> time_strips(const std::vector<Recording>& recordings,
+[[nodiscard]] std::vector<Chart> time_strips(const std::vector<DrivenRecording>& recordings,
                                              const MarkedTimes& marked = {});
 
 }  // namespace trussmap

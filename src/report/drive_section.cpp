@@ -10,7 +10,8 @@
 
 namespace trussmap {
 
-Page with_drive(const Page& page, const Robot& robot, const std::vector<Recording>& recordings) {
+Page with_drive(const Page& page, const Robot& robot,
+                const std::vector<DrivenRecording>& recordings) {
   if (robot.drive == DriveKind::differential) return page;
   std::optional<Steering> steering = steering_of(recordings);
   ChartRow charts;

@@ -190,10 +190,10 @@ ordered_json unseen_json(const Diagnosis& diagnosis) {
 }
 
 /// What a shape may speak of in all of these.
-std::vector<std::string> shape_variables(const std::vector<Recording>& recordings) {
+std::vector<std::string> shape_variables(const std::vector<DrivenRecording>& recordings) {
   std::vector<std::string> names = reserved_variables();
   for (const Covariate& one : recordings.front().drive.covariates) {
-    const auto has = [&one](const Recording& recording) {
+    const auto has = [&one](const DrivenRecording& recording) {
       const auto& all = recording.drive.covariates;
       return std::any_of(all.begin(), all.end(),
                          [&one](const Covariate& other) { return other.name == one.name; });

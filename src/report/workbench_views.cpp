@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "report/workbench_views.hpp"
 
+#include "drive/elapsed_time.hpp"
 #include "plot/fit_charts.hpp"
 #include "plot/time_strips.hpp"
-#include "recording/elapsed_time.hpp"
 #include "report/page_words.hpp"
 #include "report/view_json.hpp"
 #include "statistics/median.hpp"

@@ -32,7 +32,7 @@ bool is_anchored(const std::vector<double>& nodes, double t) {
 }
 
 /// From one pose of a path to a later one, in the axes of the first.
-Vector2 driven(const Drive& drive, const SessionPath& path, double from, double to) {
+Vector2 driven(const MotionRows& drive, const SessionPath& path, double from, double to) {
   const Pose a = pose_at(drive, path, from);
   const Pose b = pose_at(drive, path, to);
   return rotation(-a.heading) * (b.position() - a.position());
@@ -50,7 +50,7 @@ struct WindowError {
 void add_windows(const FitState& judge, std::size_t session, const std::vector<double>& nodes,
                  const TimeBlocks& blocks, int block, const SessionPath& reckoned, double horizon,
                  std::vector<WindowError>& windows) {
-  const Drive& drive = judge.recordings[session].drive;
+  const MotionRows& drive = judge.recordings[session].drive;
   for (double t = nodes.front(); t + horizon <= nodes.back(); t += 0.5 * horizon) {
     if (blocks.at(static_cast<int>(session), t + 0.5 * horizon) != block) continue;
     if (!is_anchored(nodes, t) || !is_anchored(nodes, t + horizon)) continue;

@@ -61,7 +61,7 @@ class HeldOutLegs::OwnColumns {
   std::vector<std::ptrdiff_t> rows_;  ///< of the fit's landmarks and orientations; -1: none
 };
 
-HeldOutLegs::HeldOutLegs(const std::vector<Recording>& recordings, const FitState& fit,
+HeldOutLegs::HeldOutLegs(const std::vector<DrivenRecording>& recordings, const FitState& fit,
                          const FitterOptions& options, const LegOptions& leg_options) {
   const bool all = fit.used.left_out.empty();
   const std::vector<LegSpan> legs =
@@ -192,7 +192,7 @@ bool HeldOutLegs::same_layout(const RecordingProblem& problem) const {
                     });
 }
 
-HeldOut predict_held_out(const std::vector<Recording>& recordings, const ModelFit& fit,
+HeldOut predict_held_out(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                          const LegOptions& legs) {
   return HeldOutLegs(recordings, fit, legs).metrics();
 }

@@ -19,9 +19,10 @@ class HeldOutLegs {
   /// Starts from a fit of the model to all legs. Its coefficients are estimated anew without the
   /// held-out legs (those that cannot be stay as they are); legs to landmarks that neither another
   /// leg sees nor a survey knows are passed over. Throws like fit_model.
-  HeldOutLegs(const std::vector<Recording>& recordings, const FitState& fit,
+  HeldOutLegs(const std::vector<DrivenRecording>& recordings, const FitState& fit,
               const FitterOptions& options, const LegOptions& legs = {});
-  HeldOutLegs(const std::vector<Recording>& recordings, const ModelFit& fit, const LegOptions& legs)
+  HeldOutLegs(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
+              const LegOptions& legs)
       : HeldOutLegs(recordings, *fit.state, fitter_options(fit.options), legs) {}
 
   [[nodiscard]] HeldOut metrics() const { return moved(Eigen::VectorXd()); }

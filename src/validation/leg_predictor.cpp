@@ -22,9 +22,9 @@ struct KnownMap {
 };
 
 KnownMap known_map(const RecordingProblem& problem, const FitState& training, bool survey,
-                   const std::vector<Recording>& recordings) {
+                   const std::vector<DrivenRecording>& recordings) {
   std::map<std::string, std::pair<Vector2, Matrix2>> known;
-  for (const Recording& recording : recordings) {
+  for (const DrivenRecording& recording : recordings) {
     for (const SurveyPoint& point : recording.survey) {
       if (!survey) break;
       const double sd = std::isnan(point.sd) ? training.model.noise.survey : point.sd;
@@ -47,10 +47,10 @@ KnownMap known_map(const RecordingProblem& problem, const FitState& training, bo
 
 /// Orientations of a problem where the training has them, else where a survey does, else NaN.
 void know_orientations(const FitState& training, bool survey,
-                       const std::vector<Recording>& recordings, TrainedModel& result) {
+                       const std::vector<DrivenRecording>& recordings, TrainedModel& result) {
   std::map<std::string, std::pair<double, double>> known;  // rad, rad^2
   const double surveyed = std::pow(training.model.noise.yaw, 2);
-  for (const Recording& recording : recordings) {
+  for (const DrivenRecording& recording : recordings) {
     for (const SurveyPoint& point : recording.survey) {
       if (survey && !std::isnan(point.heading)) known[point.landmark] = {point.heading, surveyed};
     }
@@ -75,7 +75,7 @@ std::string landmark_of(const RecordingProblem& problem, const Measurement& one)
 
 }  // namespace
 
-TrainedModel trained_model(const FitState& training, const std::vector<Recording>& recordings,
+TrainedModel trained_model(const FitState& training, const std::vector<DrivenRecording>& recordings,
                            const ProblemOptions& options) {
   TrainedModel result;
   ProblemOptions all = options;

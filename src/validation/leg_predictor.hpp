@@ -18,7 +18,7 @@ namespace trussmap {
 
 /// All measurements of all legs, by the model and the map of a fit to some of them (the training).
 struct TrainedModel {
-  std::vector<Recording> recordings;  ///< moved back by the training's delays
+  std::vector<DrivenRecording> recordings;  ///< moved back by the training's delays
   RecordingProblem problem;
   EffectParameters effects;
   Eigen::VectorXd offsets;           ///< of the effects' coefficients from their references
@@ -29,7 +29,7 @@ struct TrainedModel {
 
 /// Landmarks that the training has not are where a survey in use has them.
 [[nodiscard]] TrainedModel trained_model(const FitState& training,
-                                         const std::vector<Recording>& recordings,
+                                         const std::vector<DrivenRecording>& recordings,
                                          const ProblemOptions& options);
 
 /// A leg's first or last measurement: how what it sees moves.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "validation/leg_spans.hpp"
 
-#include "recording/legs.hpp"
+#include "drive/legs.hpp"
 #include "recording/time_spans.hpp"
 
 #include <algorithm>
@@ -12,8 +12,9 @@
 namespace trussmap {
 namespace {
 
-void add_sighted_legs(const Recording& recording, int session, const RecordingProblem& problem,
-                      const LegOptions& options, std::vector<LegSpan>& legs) {
+void add_sighted_legs(const DrivenRecording& recording, int session,
+                      const RecordingProblem& problem, const LegOptions& options,
+                      std::vector<LegSpan>& legs) {
   std::map<std::size_t, std::size_t> measurement_of;  // sighting -> measurement
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
@@ -33,7 +34,7 @@ void add_sighted_legs(const Recording& recording, int session, const RecordingPr
 }
 
 /// Between truth rows, or between fixes where there is no truth.
-void add_place_legs(const Recording& recording, int session, const RecordingProblem& problem,
+void add_place_legs(const DrivenRecording& recording, int session, const RecordingProblem& problem,
                     const LegOptions& options, std::vector<LegSpan>& legs) {
   const bool truth = std::any_of(
       problem.measurements.begin(), problem.measurements.end(),
@@ -61,7 +62,7 @@ void add_place_legs(const Recording& recording, int session, const RecordingProb
 
 }  // namespace
 
-std::vector<LegSpan> leg_spans(const std::vector<Recording>& recordings,
+std::vector<LegSpan> leg_spans(const std::vector<DrivenRecording>& recordings,
                                const RecordingProblem& problem, const LegOptions& options) {
   std::vector<LegSpan> legs;
   for (std::size_t s = 0; s < recordings.size(); ++s) {

@@ -24,7 +24,7 @@ struct LegSpan {
 };
 
 /// Legs of a problem that leaves nothing out, in order.
-[[nodiscard]] std::vector<LegSpan> leg_spans(const std::vector<Recording>& recordings,
+[[nodiscard]] std::vector<LegSpan> leg_spans(const std::vector<DrivenRecording>& recordings,
                                              const RecordingProblem& problem,
                                              const LegOptions& options = {});
 

@@ -29,7 +29,7 @@ std::vector<std::vector<TimeSpan>> spans_without(const std::vector<LegSpan>& leg
 }
 
 /// Poses that are not connected to the map, or else of which something can move freely.
-std::set<int> loose_poses(const std::vector<Recording>& recordings, const FitState& fit,
+std::set<int> loose_poses(const std::vector<DrivenRecording>& recordings, const FitState& fit,
                           const RecordingProblem& problem) {
   const std::vector<int> untied = untied_poses(problem);
   if (!untied.empty()) return {untied.begin(), untied.end()};
@@ -57,8 +57,8 @@ std::set<int> loose_poses(const std::vector<Recording>& recordings, const FitSta
 }
 
 /// Whole segments between spans in which something is loose are left out too.
-void leave_unconnected_segments_out(const std::vector<Recording>& recordings, const FitState& fit,
-                                    ProblemOptions& options) {
+void leave_unconnected_segments_out(const std::vector<DrivenRecording>& recordings,
+                                    const FitState& fit, ProblemOptions& options) {
   for (int round = 0; round < 20; ++round) {
     const RecordingProblem problem = make_problem(recordings, fit.model, options);
     const std::set<int> poses = loose_poses(recordings, fit, problem);
@@ -89,7 +89,7 @@ void leave_unconnected_segments_out(const std::vector<Recording>& recordings, co
 }  // namespace
 
 std::vector<std::vector<TimeSpan>> recorded_spans(std::vector<std::vector<TimeSpan>> spans,
-                                                  const std::vector<Recording>& recordings,
+                                                  const std::vector<DrivenRecording>& recordings,
                                                   const FitState& fit) {
   const Model& model = fit.model;
   for (std::size_t s = 0; s < spans.size(); ++s) {
@@ -129,8 +129,9 @@ std::vector<std::vector<TimeSpan>> with_unconnected(std::vector<std::vector<Time
   return std::move(options.left_out);
 }
 
-FitState fit_without(const std::vector<LegSpan>& legs, const std::vector<Recording>& recordings,
-                     const FitState& fit, const FitterOptions& options) {
+FitState fit_without(const std::vector<LegSpan>& legs,
+                     const std::vector<DrivenRecording>& recordings, const FitState& fit,
+                     const FitterOptions& options) {
   FitterOptions how = options;
   how.fit_effects = true;
   how.near = &fit;

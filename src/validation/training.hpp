@@ -19,13 +19,13 @@ namespace trussmap {
 /// Spans between what was sighted or known, as it was recorded before the fit's delays were taken
 /// out.
 [[nodiscard]] std::vector<std::vector<TimeSpan>> recorded_spans(
-    std::vector<std::vector<TimeSpan>> spans, const std::vector<Recording>& recordings,
+    std::vector<std::vector<TimeSpan>> spans, const std::vector<DrivenRecording>& recordings,
     const FitState& fit);
 
 /// Starts from `fit`, of all legs of these recordings. What is driven between held-out legs and is
 /// not connected to the map without them is left out as well. Throws like fit_recordings.
 [[nodiscard]] FitState fit_without(const std::vector<LegSpan>& legs,
-                                   const std::vector<Recording>& recordings, const FitState& fit,
-                                   const FitterOptions& options);
+                                   const std::vector<DrivenRecording>& recordings,
+                                   const FitState& fit, const FitterOptions& options);
 
 }  // namespace trussmap

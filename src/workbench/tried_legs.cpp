@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "workbench/tried_legs.hpp"
 
+#include "drive/elapsed_time.hpp"
 #include "geometry/index.hpp"
-#include "recording/elapsed_time.hpp"
 #include "recording/time_spans.hpp"
 #include "validation/training.hpp"
 
@@ -39,8 +39,8 @@ bool meets(const Vector2& from, const Vector2& to, const Vector2& low, const Vec
 
 }  // namespace
 
-std::vector<TriedLeg> tried_legs(const std::vector<Recording>& recordings, const FitState& fit,
-                                 const LegOptions& options) {
+std::vector<TriedLeg> tried_legs(const std::vector<DrivenRecording>& recordings,
+                                 const FitState& fit, const LegOptions& options) {
   const RecordingProblem whole = fit.used.left_out.empty() ? fit.problem : whole_problem(fit);
   std::vector<std::vector<TimeSpan>> spans(recordings.size());
   std::vector<TriedLeg> legs;

@@ -15,7 +15,7 @@ namespace trussmap {
 
 /// All legs, by their numbers. `recordings` as they were before delays were taken out; the fit has
 /// paths.
-[[nodiscard]] std::vector<TriedLeg> tried_legs(const std::vector<Recording>& recordings,
+[[nodiscard]] std::vector<TriedLeg> tried_legs(const std::vector<DrivenRecording>& recordings,
                                                const FitState& fit, const LegOptions& options);
 
 /// Of the system's rows 1 for what was driven and sighted on those legs of a fit (leg_spans) that

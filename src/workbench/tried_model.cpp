@@ -43,7 +43,7 @@ void say(const std::function<void(TryingStage)>& progress, TryingStage stage) {
 }  // namespace
 
 struct TriedModel::Tried {
-  Tried(std::shared_ptr<const std::vector<Recording>> recordings_given, const Model& model,
+  Tried(std::shared_ptr<const std::vector<DrivenRecording>> recordings_given, const Model& model,
         const DiagnoseOptions& how, const std::function<void(TryingStage)>& progress)
       : recordings(std::move(recordings_given)), options(how) {
     say(progress, TryingStage::fitting);
@@ -67,7 +67,7 @@ struct TriedModel::Tried {
     return run.candidates.at(finding);
   }
 
-  std::shared_ptr<const std::vector<Recording>> recordings;
+  std::shared_ptr<const std::vector<DrivenRecording>> recordings;
   DiagnoseOptions options;
   DiagnosisRun run;
   ModelFit fit;
@@ -83,12 +83,12 @@ struct TriedModel::Tried {
   std::optional<HeldOutLegs> legs;
 };
 
-TriedModel::TriedModel(std::shared_ptr<const std::vector<Recording>> recordings, const Model& model,
-                       const DiagnoseOptions& options,
+TriedModel::TriedModel(std::shared_ptr<const std::vector<DrivenRecording>> recordings,
+                       const Model& model, const DiagnoseOptions& options,
                        const std::function<void(TryingStage)>& progress)
     : tried_(std::make_shared<const Tried>(std::move(recordings), model, options, progress)) {}
 
-const std::vector<Recording>& TriedModel::recordings() const {
+const std::vector<DrivenRecording>& TriedModel::recordings() const {
   return *tried_->recordings;
 }
 const DiagnoseOptions& TriedModel::options() const {

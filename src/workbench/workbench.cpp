@@ -42,7 +42,7 @@ void put_figures(WorkbenchStep& step, const TriedModel& model) {
 }
 
 /// Where the drive of a recording is over, nothing can be excluded.
-void clamp_to(const Drive& drive, std::vector<TimeSpan>& spans) {
+void clamp_to(const MotionRows& drive, std::vector<TimeSpan>& spans) {
   for (TimeSpan& span : spans) {
     span.from = std::max(span.from, drive.start());
     span.to = std::min(span.to, drive.t.back());
@@ -58,9 +58,9 @@ std::vector<std::size_t> way_to(const WorkbenchLog& log, std::size_t step) {
   return way;
 }
 
-Workbench::Workbench(std::vector<Recording> recordings, const Model& model,
+Workbench::Workbench(std::vector<DrivenRecording> recordings, const Model& model,
                      const DiagnoseOptions& options, const WorkbenchWatch& watch)
-    : recordings_(std::make_shared<const std::vector<Recording>>(std::move(recordings))),
+    : recordings_(std::make_shared<const std::vector<DrivenRecording>>(std::move(recordings))),
       options_(options) {
   options_.fit.fit_effects = true;
   WorkbenchStep given;
@@ -69,9 +69,9 @@ Workbench::Workbench(std::vector<Recording> recordings, const Model& model,
   take(std::move(given), watch);
 }
 
-Workbench::Workbench(std::vector<Recording> recordings, WorkbenchLog log,
+Workbench::Workbench(std::vector<DrivenRecording> recordings, WorkbenchLog log,
                      const DiagnoseOptions& options, const WorkbenchWatch& watch)
-    : recordings_(std::make_shared<const std::vector<Recording>>(std::move(recordings))),
+    : recordings_(std::make_shared<const std::vector<DrivenRecording>>(std::move(recordings))),
       options_(options),
       log_(std::move(log)) {
   check(log_);

@@ -134,7 +134,7 @@ TEST(BuildMap, RefusesARecordingWithoutSightings) {
   Recording nothing = drive_about(true, 11);
   nothing.sightings.clear();
   EXPECT_THROW((void)build_map({nothing}, Model{}), InputError);
-  EXPECT_THROW((void)build_map({}, Model{}), std::invalid_argument);
+  EXPECT_THROW((void)build_map(std::vector<Recording>(), Model{}), std::invalid_argument);
 }
 
 MapBuilder grown_by(const std::vector<Recording>& recordings, MapAxes axes, Method method) {

@@ -5,6 +5,7 @@
 #include "calibration/gross_starts.hpp"
 
 #include "calibration/wheel_calibration.hpp"
+#include "driven.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/simulated_recording.hpp"
 
@@ -39,7 +40,7 @@ SimulatedRecording driven(const std::string& constant, double g, const Equipment
 }
 
 std::vector<GrossStart> starts_of(const SimulatedRecording& simulated) {
-  return gross_starts({simulated.drive.recording}, simulated.model.robot);
+  return gross_starts({testing::driven(simulated.drive.recording)}, simulated.model.robot);
 }
 
 TEST(GrossStarts, AreNoneWhereTheStatedConstantsAreAsGood) {

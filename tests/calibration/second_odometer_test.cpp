@@ -4,6 +4,7 @@
 // A second odometer, two unloaded encoder wheels as Chong & Kleeman's robot has them, in place of
 // truth: its motion over each second stands in loops.csv.
 #include "calibration/wheel_calibration.hpp"
+#include "driven.hpp"
 #include "estimation/drawn_drive.hpp"
 
 #include <algorithm>
@@ -84,8 +85,8 @@ Model model_of(double noise) {
 TEST(SecondOdometer, GivesTheWheelsExactlyWhereItIsExact) {
   WheelCalibrationOptions options;
   options.noise = false;
-  const WheelCalibration found =
-      calibrate_wheels({recorded(figure(), 0.0, 0.0, 1)}, model_of(0.001), options);
+  const WheelCalibration found = calibrate_wheels(
+      {testing::driven(recorded(figure(), 0.0, 0.0, 1))}, model_of(0.001), options);
   ASSERT_TRUE(found.diameter_ratio && found.wheelbase_ratio && found.scale);
   EXPECT_TRUE(found.undetermined.empty());
   EXPECT_NEAR(found.diameter_ratio->value, 1.004, 2e-5);
@@ -99,9 +100,10 @@ TEST(SlowSecondOdometer, ItsOwnNoiseLeavesErrorsHonestAndTheWheelsNoiseFound) {
   double squares = 0.0;
   Eigen::Vector2d noise = Eigen::Vector2d::Zero();
   for (int trial = 0; trial < kTrials; ++trial) {
-    const WheelCalibration found = calibrate_wheels(
-        {recorded(figure(), kWheels, 0.0005, 100 + static_cast<std::uint64_t>(trial))},
-        model_of(0.001), WheelCalibrationOptions());
+    const WheelCalibration found =
+        calibrate_wheels({testing::driven(recorded(figure(), kWheels, 0.0005,
+                                                   100 + static_cast<std::uint64_t>(trial)))},
+                         model_of(0.001), WheelCalibrationOptions());
     ASSERT_TRUE(found.diameter_ratio && found.wheelbase_ratio && found.scale);
     ASSERT_TRUE(found.noise_left && found.noise_right);
     squares += std::pow((found.diameter_ratio->value - 1.004) / found.diameter_ratio->sd, 2) +
@@ -146,7 +148,8 @@ TEST(SecondOdometer, ItsDriveBecomesMotionsThatGiveTheWheels) {
   EXPECT_NEAR(recording.loops[1].sd_heading, std::sqrt(c2) / kEncoderBase, 1e-9);
   WheelCalibrationOptions options;
   options.noise = false;
-  const WheelCalibration found = calibrate_wheels({recording}, model_of(0.001), options);
+  const WheelCalibration found =
+      calibrate_wheels({testing::driven(recording)}, model_of(0.001), options);
   ASSERT_TRUE(found.diameter_ratio && found.wheelbase_ratio && found.scale);
   EXPECT_NEAR(found.diameter_ratio->value, 1.004, 2e-5);
   EXPECT_NEAR(found.wheelbase_ratio->value, 0.97, 2e-5);
@@ -168,7 +171,8 @@ TEST(SecondOdometer, LoopsThatOnlyCloseGiveNoScale) {
   for (Loop& loop : recording.loops) loop.sd = std::hypot(loop.dx, loop.dy) / 5.0 + 0.001;
   WheelCalibrationOptions options;
   options.noise = false;
-  const WheelCalibration found = calibrate_wheels({recording}, model_of(0.001), options);
+  const WheelCalibration found =
+      calibrate_wheels({testing::driven(recording)}, model_of(0.001), options);
   EXPECT_FALSE(found.scale);
   ASSERT_FALSE(found.undetermined.empty());
   EXPECT_NE(found.undetermined.front().find("measures a distance"), std::string::npos);

@@ -5,6 +5,7 @@
 #include "calibration/wheel_calibration.hpp"
 
 #include "calibration/truth_holdout.hpp"
+#include "driven.hpp"
 #include "estimation/drawn_drive.hpp"
 #include "estimation/simulated_recordings.hpp"
 #include "shared_data.hpp"
@@ -65,7 +66,7 @@ TEST(WheelCalibration, ExactRecordingsGiveTheWheelsExactly) {
   robot.left = -0.02;
   robot.heading = 0.03;
   const WheelCalibration found =
-      calibrate_wheels({draw(figure(), robot)}, model_of(robot), without_noise());
+      calibrate_wheels({testing::driven(draw(figure(), robot))}, model_of(robot), without_noise());
   ASSERT_TRUE(found.diameter_ratio && found.wheelbase_ratio && found.scale);
   EXPECT_TRUE(found.undetermined.empty());
   // The priors of the truth's alignment pull a little.
@@ -80,8 +81,10 @@ TEST(WheelCalibration, ExactRecordingsGiveTheWheelsExactly) {
 TEST(WheelCalibration, SecondRecordingsAndGivenCoefficientsChangeNothing) {
   const DrawnRobot robot = faulty();
   const Recording one = draw(figure(), robot);
-  const WheelCalibration first = calibrate_wheels({one, one}, model_of(robot), without_noise());
-  const WheelCalibration again = calibrate_wheels({one, one}, first.model, without_noise());
+  const WheelCalibration first = calibrate_wheels({testing::driven(one), testing::driven(one)},
+                                                  model_of(robot), without_noise());
+  const WheelCalibration again =
+      calibrate_wheels({testing::driven(one), testing::driven(one)}, first.model, without_noise());
   EXPECT_NEAR(again.diameter_ratio->value, first.diameter_ratio->value, 1e-8);
   EXPECT_NEAR(again.wheelbase_ratio->value, first.wheelbase_ratio->value, 1e-8);
   EXPECT_NEAR(again.scale->value, first.scale->value, 1e-8);
@@ -90,7 +93,8 @@ TEST(WheelCalibration, SecondRecordingsAndGivenCoefficientsChangeNothing) {
 TEST(WheelCalibration, TheFoundModelReckonsTheDrive) {
   const DrawnRobot robot = faulty();
   const std::vector<Recording> one = {draw(figure(), robot)};
-  const WheelCalibration found = calibrate_wheels(one, model_of(robot), without_noise());
+  const WheelCalibration found =
+      calibrate_wheels(testing::driven(one), model_of(robot), without_noise());
   EXPECT_GT(drive_errors(one, model_of(robot)).front().end, 0.3);
   EXPECT_LT(drive_errors(one, found.model).front().end, 0.005);
 }
@@ -100,7 +104,7 @@ TEST(WheelCalibration, ALateAndDriftingClockIsNoWheelError) {
   robot.late = 0.12;
   robot.clock = 7e-4;
   const WheelCalibration found =
-      calibrate_wheels({draw(figure(), robot)}, model_of(robot), without_noise());
+      calibrate_wheels({testing::driven(draw(figure(), robot))}, model_of(robot), without_noise());
   EXPECT_NEAR(found.diameter_ratio->value, robot.E_d, 1e-4);
   EXPECT_NEAR(found.wheelbase_ratio->value, robot.E_b, 3e-4);
   EXPECT_NEAR(found.scale->value, robot.E_s, 1e-4);
@@ -111,9 +115,9 @@ TEST(WheelCalibration, ALateAndDriftingClockIsNoWheelError) {
 
 TEST(WheelCalibration, StraightLinesDoNotTellTheWheelbase) {
   const DrawnRobot robot;
-  const WheelCalibration found =
-      calibrate_wheels({draw({{1.0, 0.0, 0.0}, {20.0, 0.5, 0.0}, {1.0, 0.0, 0.0}}, robot)},
-                       model_of(robot), without_noise());
+  const WheelCalibration found = calibrate_wheels(
+      {testing::driven(draw({{1.0, 0.0, 0.0}, {20.0, 0.5, 0.0}, {1.0, 0.0, 0.0}}, robot))},
+      model_of(robot), without_noise());
   EXPECT_FALSE(found.wheelbase_ratio);
   EXPECT_TRUE(found.diameter_ratio);
   EXPECT_TRUE(found.scale);
@@ -124,9 +128,9 @@ TEST(WheelCalibration, StraightLinesDoNotTellTheWheelbase) {
 
 TEST(WheelCalibration, SpinsDoNotTellLargerWheelsFromASmallerWheelbase) {
   const DrawnRobot robot;
-  const WheelCalibration found =
-      calibrate_wheels({draw({{1.0, 0.0, 0.0}, {10.0, 0.0, 0.8}, {10.0, 0.0, -0.8}}, robot)},
-                       model_of(robot), without_noise());
+  const WheelCalibration found = calibrate_wheels(
+      {testing::driven(draw({{1.0, 0.0, 0.0}, {10.0, 0.0, 0.8}, {10.0, 0.0, -0.8}}, robot))},
+      model_of(robot), without_noise());
   EXPECT_TRUE(found.wheelbase_ratio);
   EXPECT_FALSE(found.scale);
   ASSERT_FALSE(found.undetermined.empty());
@@ -214,7 +218,8 @@ TEST(SlowWheelCalibration, StandardErrorsAreTheScatterAndNoiseIsUnbiased) {
   double reduced = 0.0;
   double dof = 0.0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const WheelCalibration found = calibrate_wheels({draw(figure(), robot, seed)}, model);
+    const WheelCalibration found =
+        calibrate_wheels({testing::driven(draw(figure(), robot, seed))}, model);
     E_d.add(found.diameter_ratio, robot.E_d);
     E_b.add(found.wheelbase_ratio, robot.E_b);
     E_s.add(found.scale, robot.E_s);
@@ -233,7 +238,8 @@ TEST(SlowWheelCalibration, StandardErrorsAreTheScatterAndNoiseIsUnbiased) {
 }
 
 TEST(TruthHoldout, StretchesAreTheLegsThatAreNotHeldOut) {
-  const std::vector<Recording> recordings = {draw(figure(), {}), draw(figure(), {})};
+  const std::vector<DrivenRecording> recordings = {testing::driven(draw(figure(), {})),
+                                                   testing::driven(draw(figure(), {}))};
   const std::vector<TruthLeg> legs = truth_legs(recordings, 0.3, 1.0);
   int held = 0;
   for (const TruthLeg& leg : legs) held += leg.held_out ? 1 : 0;
@@ -245,7 +251,7 @@ TEST(TruthHoldout, StretchesAreTheLegsThatAreNotHeldOut) {
     const double middle = 0.5 * (recordings[0].truth[leg.from].t + recordings[0].truth[leg.to].t);
     bool inside = false;
     for (std::size_t k = 0; k < training_segments.recordings.size(); ++k) {
-      const Recording& one = training_segments.recordings[k];
+      const DrivenRecording& one = training_segments.recordings[k];
       inside = inside || (training_segments.sessions[k] == leg.session &&
                           one.truth.front().t < middle && middle < one.truth.back().t);
     }
@@ -256,8 +262,8 @@ TEST(TruthHoldout, StretchesAreTheLegsThatAreNotHeldOut) {
 TEST(TruthHoldout, ArrivalErrorsComeFromTheWheelsAlone) {
   DrawnRobot robot;
   robot.E_s = 1.01;
-  const std::vector<Recording> straight = {
-      draw({{1.0, 0.0, 0.0}, {60.0, 0.5, 0.0}, {1.0, 0.0, 0.0}}, robot)};
+  const std::vector<DrivenRecording> straight = {
+      testing::driven(draw({{1.0, 0.0, 0.0}, {60.0, 0.5, 0.0}, {1.0, 0.0, 0.0}}, robot))};
   const ArrivalErrors nominal =
       arrival_errors(straight, truth_legs(straight, 0.3, 1.0), model_of(robot));
   ASSERT_GT(nominal.legs(), 4);

@@ -4,6 +4,7 @@
 
 #include "criticism/inverted_recordings.hpp"
 #include "criticism/known_events.hpp"
+#include "driven.hpp"
 #include "estimation/simulated_recordings.hpp"
 #include "shared_data.hpp"
 #include "trussmap/discover.hpp"
@@ -55,10 +56,10 @@ class HiddenEffect : public ::testing::TestWithParam<Hidden> {
   void read() {
     const std::filesystem::path folder = testing::shared("data/hidden") / GetParam().folder;
     model_ = read_model(folder / "model.toml");
-    recordings_ = {read_recording(folder)};
+    recordings_ = {testing::driven(read_recording(folder))};
   }
   Model model_;
-  std::vector<Recording> recordings_;
+  std::vector<DrivenRecording> recordings_;
 };
 
 TEST_P(HiddenEffect, IsNamedFirst) {
@@ -244,7 +245,7 @@ TEST(HeldOutLegs, MoveAsTheSlopesSay) {
     effect.shape = {"1"};
     const Score score = tests.test({effect}).front();
     const HeldOut told = legs.moved(kSize * legs.slopes(effect, score.columns, score.landmarks));
-    Recording changed = one.recording;
+    DrivenRecording changed = one.recording;
     for (std::size_t row = 0; row < changed.drive.rows(); ++row) {
       double& left = changed.drive.left[row];
       double& right = changed.drive.right[row];
@@ -283,7 +284,7 @@ TEST(Diagnosis, UnderNoiseThatItEstimatedNoWarningBlamesTheStated) {
   testing::SimulatedRecording world = testing::simulate_recording({}, 5);
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
-  Drive& drive = world.recording.drive;
+  MotionRows& drive = world.recording.drive;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     for (std::vector<double>* wheel : {&drive.left, &drive.right}) {
       double& travel = (*wheel)[row];

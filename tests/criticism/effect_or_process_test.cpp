@@ -6,6 +6,7 @@
 #include "criticism/effect_or_process.hpp"
 
 #include "criticism/score_test.hpp"
+#include "driven.hpp"
 #include "fit/noise_fit.hpp"
 #include "fit/process_columns.hpp"
 #include "trussmap/simulation.hpp"
@@ -122,7 +123,8 @@ TEST(ProcessColumns, LikelihoodIsThatOfTheStates) {
   robot.gyro = true;
   robot.noise.gyro_walk = 1e-4;
   Model model;
-  const Recording recording = simulate_drive(mesh, tours.walk, {}, robot, 4, {}).recording;
+  const DrivenRecording recording =
+      testing::driven(simulate_drive(mesh, tours.walk, {}, robot, 4, {}).recording);
   const FitState fit = fit_recordings({recording}, model);
   const ScoreTest tests(fit);
   NoiseProcess walk;

@@ -118,7 +118,7 @@ TEST(EventTests, ALandmarkThatMovesDuringASessionIsFound) {
 
 TEST(EventTests, ASessionWithAnotherScaleIsOutOfLine) {
   NoisyDrive world = simulate_world({true, true, false, 1, 3}, 6);
-  Drive& drive = world.recordings[1].drive;
+  MotionRows& drive = world.recordings[1].drive;
   for (double& left : drive.left) left *= 1.01;
   for (double& right : drive.right) right *= 1.01;
   const std::vector<TestedEvent> found = events_of(world);
@@ -131,7 +131,7 @@ TEST(EventTests, ASessionWithAnotherScaleIsOutOfLine) {
 TEST(EventTests, ASessionsSizesHaveTheirPlaces) {
   for (const bool compass : {true, false}) {
     NoisyDrive world = simulate_world({compass, true, false, 1, 3}, 6);
-    Drive& drive = world.recordings[1].drive;
+    MotionRows& drive = world.recordings[1].drive;
     for (double& left : drive.left) left *= 1.02;
     for (double& right : drive.right) right *= 1.02;
     const std::vector<TestedEvent> found = events_of(world);

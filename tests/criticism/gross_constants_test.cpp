@@ -4,6 +4,7 @@
 // Constants that are wrong by much: named for what they are, sized by a fit, and no noise instead.
 #include "criticism/gross_constants.hpp"
 
+#include "driven.hpp"
 #include "shared_data.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/discover.hpp"
@@ -47,19 +48,19 @@ std::vector<std::string> names_in(const GrossConstants& constants) {
 
 TEST(GrossConstants, AreNoneWhereNothingIsMissing) {
   const SimulatedRecording one = simulate(small_world(4), {});
-  EXPECT_FALSE(gross_constants({one.drive.recording}, given(one)));
+  EXPECT_FALSE(gross_constants({testing::driven(one.drive.recording)}, given(one)));
 }
 
 TEST(SlowGrossConstants, AreNoneWhereAnErrorIsSmall) {
   const SimulatedRecording one = simulate(small_world(4), {catalogue_effect("wheelbase", {0.02})});
-  EXPECT_FALSE(gross_constants({one.drive.recording}, given(one)));
+  EXPECT_FALSE(gross_constants({testing::driven(one.drive.recording)}, given(one)));
 }
 
 TEST(SlowGrossConstants, AreTheRightOnesWithTheRightSizes) {
   for (const auto& [name, g] : {std::pair{"travel scale", 1.0}, std::pair{"wheel scale", 0.25},
                                 std::pair{"wheel diameter ratio", 0.1}}) {
     const SimulatedRecording one = simulate(small_world(5), {catalogue_effect(name, {g})});
-    const auto found = gross_constants({one.drive.recording}, given(one));
+    const auto found = gross_constants({testing::driven(one.drive.recording)}, given(one));
     ASSERT_TRUE(found) << name;
     EXPECT_EQ(names_in(*found), std::vector<std::string>{name});
     const EffectEstimate& size = found->fit.effects.back();
@@ -72,7 +73,7 @@ TEST(SlowGrossConstants, AskForNoScaleThatNothingMeasures) {
   SimulationSettings settings = small_world(5);
   settings.no_survey = true;
   const SimulatedRecording one = simulate(settings, {catalogue_effect("wheelbase", {-0.2})});
-  const auto found = gross_constants({one.drive.recording}, given(one));
+  const auto found = gross_constants({testing::driven(one.drive.recording)}, given(one));
   ASSERT_TRUE(found);
   EXPECT_EQ(names_in(*found), std::vector<std::string>{"wheelbase"});
 }
@@ -83,7 +84,7 @@ TEST(SlowGrossConstants, ALoadThatLastsForALegIsNoConstant) {
   settings.covariates = {"slack"};
   const SimulatedRecording one =
       simulate(settings, {Effect{"slack", Channel::travel, {"slack-0.5"}, {0.08}}});
-  EXPECT_FALSE(gross_constants({one.drive.recording}, given(one)));
+  EXPECT_FALSE(gross_constants({testing::driven(one.drive.recording)}, given(one)));
 }
 
 TEST(GrossConstants, LeadADiagnosisWithTheirFittedSizes) {
@@ -146,7 +147,8 @@ TEST(SlowReports, AreToldTheConstantThatIsWrong) {
     const std::filesystem::path folder = testing::shared("data/reports") / report.folder;
     const Model model = read_model(folder / "model.toml");
     const FitOptions fit = gated_fit();
-    const PreparedRecordings ready = prepare_recordings({read_recording(folder)}, model, fit);
+    const PreparedRecordings ready =
+        prepare_recordings({testing::driven(read_recording(folder))}, model, fit);
     DiagnoseOptions options;
     options.fit = fit;
     const Diagnosis result = diagnose(ready.recordings, model, options);

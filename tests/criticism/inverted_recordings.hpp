@@ -80,7 +80,7 @@ struct InvertedOptions {
 };
 
 struct InvertedRecording {
-  Recording recording;
+  DrivenRecording recording;
   std::map<std::string, std::complex<double>> landmarks;
   std::vector<std::complex<double>> places;  ///< true, of the axle, at the end of each row
   std::vector<double> headings;
@@ -99,7 +99,7 @@ class Inverter {
     for (std::size_t k = 0; k < grid.size(); ++k) {
       result_.landmarks["P" + std::to_string(k)] = grid[k];
     }
-    Recording& recording = result_.recording;
+    DrivenRecording& recording = result_.recording;
     recording.name = "inverted";
     recording.drive.covariates.push_back({"payload_kg", {}});
     int at = 0;
@@ -221,7 +221,7 @@ class Inverter {
     time_ = kInvertedRow * static_cast<double>(++rows_);
     place_ += turned(arc(ds * Point(1.0, g), dtheta), heading_);
     heading_ += dtheta;
-    Drive& drive = result_.recording.drive;
+    MotionRows& drive = result_.recording.drive;
     drive.t.push_back(time_);
     drive.left.push_back(row.left + noise(0.003 * std::sqrt(std::abs(row.left))));
     drive.right.push_back(row.right + noise(0.003 * std::sqrt(std::abs(row.right))));

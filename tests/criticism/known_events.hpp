@@ -7,6 +7,7 @@
 
 #include "criticism/noisy_recordings.hpp"
 #include "criticism/score_test.hpp"
+#include "driven.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +29,7 @@ inline Bump bumped(const NoisyWorld& how, double sds, std::uint64_t seed) {
   Bump result{simulate_world(how, seed), {}};
   std::mt19937_64 random(seed + 77);
   const TrueMotion& motion = result.world.motions.front();
-  Drive& drive = result.world.recordings.front().drive;
+  MotionRows& drive = result.world.recordings.front().drive;
   const std::size_t leg = 1 + random() % (motion.stops.size() - 1);
   std::size_t row = 0;
   do {
@@ -58,8 +59,8 @@ inline Bump bumped(const NoisyWorld& how, double sds, std::uint64_t seed) {
 }
 
 /// Sightings of a landmark in the last session, under another name.
-inline std::vector<Recording> with_another(std::vector<Recording> recordings,
-                                           const std::string& landmark) {
+inline std::vector<DrivenRecording> with_another(std::vector<DrivenRecording> recordings,
+                                                 const std::string& landmark) {
   for (Sighting& sighting : recordings.back().sightings) {
     if (sighting.landmark == landmark) sighting.landmark += "'";
   }
@@ -110,7 +111,7 @@ inline NoisyDrive with_moved_landmark(double sds, std::uint64_t seed, std::strin
   SimulatedDrive drive = simulate_drive(moved, walk, style, WheeledRobot{}, seed * 16 + 1);
   drive.recording.survey.clear();
   drive.recording.name = world.recordings.back().name;
-  world.recordings.back() = std::move(drive.recording);
+  world.recordings.back() = testing::driven(drive.recording);
   return world;
 }
 

@@ -5,6 +5,7 @@
 // simulated.
 #include "criticism/diagnosis.hpp"
 #include "criticism/score_test.hpp"
+#include "driven.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/evidence.hpp"
@@ -142,7 +143,7 @@ TEST(LargeEffects, AreForetoldAsTheFitThenFindsThem) {
   const Score score = ScoreTest(*without.state).test({mine}).front();
   Model model = one.model;
   model.effects = {mine};
-  const ModelFit with = refit({one.drive.recording}, model, without);
+  const ModelFit with = refit({testing::driven(one.drive.recording)}, model, without);
   EXPECT_NEAR(score.score, without.chi2 - with.chi2, 0.01 * (without.chi2 - with.chi2));
   EXPECT_NEAR(score.coefficients.at(0), 0.02, 0.001);
 }
@@ -167,8 +168,9 @@ TEST(LargeEffects, AreShownOnTheirCurve) {
     effect.coefficients.clear();
     model.effects.push_back(effect);
   }
-  const TriedModel tried(
-      std::make_shared<const std::vector<Recording>>(std::vector{one.drive.recording}), model);
+  const TriedModel tried(std::make_shared<const std::vector<DrivenRecording>>(
+                             std::vector{testing::driven(one.drive.recording)}),
+                         model);
   const Response shown = tried.shown(0).response;
   ASSERT_GT(shown.bins.size(), 6U);
   int far = 0;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What real robots lack (UTIAS MRCLAM set 6), from landmarks alone, judged by the motion capture.
+#include "driven.hpp"
 #include "shared_data.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/fit_model.hpp"
@@ -74,8 +75,8 @@ TEST(SlowMrclamDiscovery, FindsDelayAndLossInArcsAndDeadReckoningGetsBetter) {
   const LastingErrors errors =
       lasting_errors(fit_model({read.recording}, read.model, options.diagnosis.fit));
   EXPECT_GE(errors.lasts, 0.5);
-  const Discovery found =
-      discover(thinned_frames({read.recording}, errors.lasts), read.model, options);
+  const Discovery found = discover(thinned_frames({testing::driven(read.recording)}, errors.lasts),
+                                   read.model, options);
   EXPECT_TRUE(found.found.settled);
   std::set<std::string> names;
   double delay = 0.0;

@@ -5,6 +5,7 @@
 // does not state, or a bump. Legs differ in length, speed and rests.
 #pragma once
 
+#include "driven.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/simulation.hpp"
 
@@ -24,7 +25,7 @@ struct NoisyWorld {
 };
 
 struct NoisyDrive {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   std::vector<TrueMotion> motions;
   Mesh mesh;
   Model model;
@@ -46,14 +47,14 @@ inline NoisyDrive simulate_world(const NoisyWorld& world, std::uint64_t seed) {
     SimulatedDrive drive = simulate_drive(result.mesh, tours.walk, style, robot, own);
     if (!world.survey || session > 0) drive.recording.survey.clear();
     drive.recording.name = "run " + std::to_string(session + 1);
-    result.recordings.push_back(std::move(drive.recording));
+    result.recordings.push_back(testing::driven(drive.recording));
     result.motions.push_back(std::move(drive.motion));
   }
   return result;
 }
 
 /// What a row's wheels have driven too much.
-inline void add_to_row(Drive& drive, std::size_t row, double travel, double turn,
+inline void add_to_row(MotionRows& drive, std::size_t row, double travel, double turn,
                        double wheelbase) {
   drive.left[row] += travel - 0.5 * wheelbase * turn;
   drive.right[row] += travel + 0.5 * wheelbase * turn;
@@ -78,7 +79,7 @@ inline void add_noise(NoisyDrive& world, const std::string& law, double factor,
   std::normal_distribution<double> normal;
   const double wheelbase = world.model.robot.wheelbase;
   for (std::size_t s = 0; s < world.recordings.size(); ++s) {
-    Drive& drive = world.recordings[s].drive;
+    MotionRows& drive = world.recordings[s].drive;
     const TrueMotion& motion = world.motions[s];
     const auto legs = static_cast<double>(motion.stops.size() - 1);
     double path = 0.0;

@@ -4,6 +4,7 @@
 #include "criticism/place_uncertainty.hpp"
 
 #include "criticism/noisy_recordings.hpp"
+#include "driven.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/wording.hpp"
@@ -17,7 +18,7 @@ namespace trussmap::place_uncertainty_test {
 namespace {
 
 struct Drawn {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   Model model;
 };
 
@@ -27,7 +28,7 @@ Drawn drawn(const Effect& effect, std::uint64_t seed) {
   const Tours tours = make_tours(mesh, WalkKind::euler, 4, random);
   SimulatedEffects acting;
   acting.effects = {effect};
-  return {{simulate_drive(mesh, tours.walk, {}, {}, seed, acting).recording}, {}};
+  return {{testing::driven(simulate_drive(mesh, tours.walk, {}, {}, seed, acting).recording)}, {}};
 }
 
 Candidate threshold_at(double value) {

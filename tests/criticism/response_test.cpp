@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/response.hpp"
 
+#include "driven.hpp"
 #include "fit/fit_state.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
@@ -27,8 +28,8 @@ Effect effect(Channel channel, const std::vector<Shape>& shape,
 
 /// The riddle, as its owner believes the robot to be; its compass has 0.04 sin h - 0.03 cos h.
 struct Riddle {
-  std::vector<Recording> recordings{
-      read_recording(std::string(TRUSSMAP_SOURCE_DIR) + "/maps/riddle")};
+  std::vector<DrivenRecording> recordings{
+      testing::driven(read_recording(std::string(TRUSSMAP_SOURCE_DIR) + "/maps/riddle"))};
   FitState fit = fit_recordings(
       recordings, read_model(std::string(TRUSSMAP_SOURCE_DIR) + "/maps/riddle/model.toml"));
   ScoreTest tests{fit};

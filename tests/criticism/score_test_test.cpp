@@ -31,7 +31,7 @@ Effect effect_of(Channel channel, const std::vector<Shape>& shape) {
 }
 
 /// What the recording's wheels would have shown with a wheelbase off by as much.
-void widen(Recording& recording, double wheelbase, double g) {
+void widen(DrivenRecording& recording, double wheelbase, double g) {
   for (std::size_t row = 0; row < recording.drive.rows(); ++row) {
     const double path = 0.5 * (recording.drive.left[row] + recording.drive.right[row]);
     const double turn =

@@ -16,9 +16,9 @@ using testing::NoisyDrive;
 using testing::simulate_world;
 
 /// Every row cut into `parts` of equal length; the compass is read at the end of the last.
-Recording split(const Recording& whole, int parts) {
-  Recording result = whole;
-  Drive& drive = result.drive;
+DrivenRecording split(const DrivenRecording& whole, int parts) {
+  DrivenRecording result = whole;
+  MotionRows& drive = result.drive;
   drive = {};
   for (const Covariate& one : whole.drive.covariates) drive.covariates.push_back({one.name, {}});
   for (std::size_t row = 0; row < whole.drive.rows(); ++row) {
@@ -39,7 +39,7 @@ Recording split(const Recording& whole, int parts) {
 }
 
 /// Turn rate from which on the trend against the sense of turning counts a turn, rad/s.
-double least_turn(const std::vector<Recording>& recordings, const Model& model) {
+double least_turn(const std::vector<DrivenRecording>& recordings, const Model& model) {
   const FitState fit = fit_recordings(recordings, model);
   for (const Trend& trend : find_trends(fit, ScoreTest(fit))) {
     if (trend.against != "turn sense") continue;
@@ -50,8 +50,8 @@ double least_turn(const std::vector<Recording>& recordings, const Model& model) 
 
 TEST(Trends, WhatCountsAsATurnDoesNotHangOnTheRateOfLogging) {
   const NoisyDrive world = simulate_world({}, 3);
-  std::vector<Recording> finer;
-  for (const Recording& one : world.recordings) finer.push_back(split(one, 5));
+  std::vector<DrivenRecording> finer;
+  for (const DrivenRecording& one : world.recordings) finer.push_back(split(one, 5));
   const double least = least_turn(world.recordings, world.model);
   EXPECT_GT(least, 0.005);  // k = 0.003 on straights of 0.25 m/s and more, B = 0.34 m
   EXPECT_LT(least, 0.2);

@@ -3,6 +3,7 @@
 // A tracker that is turned against the robot, told from a robot that slips and from its compass.
 #include "criticism/candidates.hpp"
 #include "criticism/score_test.hpp"
+#include "driven.hpp"
 #include "estimation/kinds/kinds.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/simulation.hpp"
@@ -17,12 +18,12 @@ namespace trussmap::truth_heading_test {
 namespace {
 
 /// A drive with truth once a second, its headings turned.
-Recording tracked(double turned, std::uint64_t seed) {
+DrivenRecording tracked(double turned, std::uint64_t seed) {
   const Mesh mesh = mesh_of_lines({0.0, 4.0, 9.0}, {0.0, 3.0, 7.0});
   std::mt19937_64 random = random_stream(seed, Stream::walk);
   const Tours tours = make_tours(mesh, WalkKind::euler, 2, random);
   SimulatedDrive drive = simulate_drive(mesh, tours.walk, {}, {}, seed);
-  Recording recording = std::move(drive.recording);
+  DrivenRecording recording = testing::driven(drive.recording);
   recording.survey.clear();
   std::normal_distribution<double> normal;
   const Noise noise;
@@ -37,7 +38,7 @@ Recording tracked(double turned, std::uint64_t seed) {
 }
 
 TEST(TruthHeading, IsNamedAsSuch) {
-  const Recording recording = tracked(0.02, 5);
+  const DrivenRecording recording = tracked(0.02, 5);
   const Diagnosis result = diagnose({recording}, Model());
   ASSERT_EQ(result.verdict, Diagnosis::Verdict::missing);
   EXPECT_EQ(result.missing, "truth heading");
@@ -48,7 +49,7 @@ TEST(TruthHeading, IsNamedAsSuch) {
 
 // What it adds to truth rows, by differences of the fit's own residuals.
 TEST(TruthHeading, MovesTruthRowsAlone) {
-  const Recording recording = tracked(0.0, 6);
+  const DrivenRecording recording = tracked(0.0, 6);
   const ModelFit fit = fit_model({recording}, Model());
   Effect effect{"truth heading", Channel::truth_heading, {"1"}, {}};
   const ScoreTest tests(*fit.state);
@@ -72,7 +73,7 @@ TEST(TruthHeading, MovesTruthRowsAlone) {
 }
 
 TEST(TruthHeading, IsNoCandidateWithoutTruth) {
-  Recording recording = tracked(0.0, 7);
+  DrivenRecording recording = tracked(0.0, 7);
   recording.truth.clear();
   const ModelFit fit = fit_model({recording}, Model());
   const ScoreTest tests(*fit.state);

@@ -3,6 +3,7 @@
 // compare, diagnose and discover agree on the same fit.
 #include "criticism/verdict.hpp"
 
+#include "driven.hpp"
 #include "estimation/simulated_recordings.hpp"
 #include "shared_data.hpp"
 #include "trussmap/discover.hpp"
@@ -32,7 +33,7 @@ TEST(Verdict, EitherQuestionHasHalfTheLevel) {
   EXPECT_EQ(misfit_of(0.024, {}, 0.01), Objection::none);
 }
 
-void expect_agreement(const std::vector<Recording>& recordings, const ModelFit& fit,
+void expect_agreement(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                       const std::string& what) {
   const Diagnosis diagnosed = diagnose(recordings, fit);
   // The same fit: under the noise that the diagnosis has estimated.
@@ -55,7 +56,7 @@ TEST(SlowVerdict, OnThePracticeRecordingsNoneContradictsAnother) {
   TRUSSMAP_NEEDS_SHARED("data/hidden");
   for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"}) {
     const std::filesystem::path folder = testing::shared("data/hidden") / name;
-    const std::vector<Recording> recordings{read_recording(folder)};
+    const std::vector<DrivenRecording> recordings{testing::driven(read_recording(folder))};
     expect_agreement(recordings, fit_model(recordings, read_model(folder / "model.toml")), name);
   }
 }
@@ -69,7 +70,7 @@ TEST(SlowVerdict, OnSimulatedRecordingsNoneContradictsAnother) {
         testing::simulate_recording({true, true, seed % 2 == 0}, seed);
     const double wrong = 0.02 / static_cast<double>(seed * seed);
     for (double& left : one.recording.drive.left) left *= 1.0 + wrong;
-    const std::vector<Recording> recordings{one.recording};
+    const std::vector<DrivenRecording> recordings{one.recording};
     const ModelFit fit = fit_model(recordings, one.model);
     expect_agreement(recordings, fit, std::to_string(seed));
     (compare(recordings, fit).consistent() ? unseen : seen) += 1;
@@ -82,7 +83,7 @@ TEST(SlowVerdict, TheModelFoundIsJudgedAsDiagnoseAndCompareJudgeIt) {
   TRUSSMAP_NEEDS_SHARED("data/hidden");
   for (const char* name : {"a", "d", "f", "h"}) {
     const std::filesystem::path folder = testing::shared("data/hidden") / name;
-    const std::vector<Recording> recordings{read_recording(folder)};
+    const std::vector<DrivenRecording> recordings{testing::driven(read_recording(folder))};
     for (const std::size_t most : {1U, 6U}) {
       DiscoverOptions options;
       options.most_effects = most;

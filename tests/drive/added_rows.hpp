@@ -7,7 +7,7 @@
 namespace trussmap::testing {
 
 /// Rows of 0.1 s, from t = 10 s on, in which two wheels travel so far (m).
-inline void add_rows(Drive& drive, int rows, double left, double right) {
+inline void add_rows(MotionRows& drive, int rows, double left, double right) {
   for (int k = 0; k < rows; ++k) {
     drive.t.push_back(10.0 + 0.1 * static_cast<double>(drive.rows() + 1));
     drive.left.push_back(left);

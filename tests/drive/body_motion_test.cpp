@@ -30,7 +30,9 @@ TEST(BodyMotion, AWheelTravelsAsItsPlaceOnTheBody) {
 }
 
 TEST(BodyMotion, IsAddedToTheSideOnlyWhereADriveGoesThere) {
-  Drive drive{{0.1, 0.2}, {0.1, 0.1}, {0.1, 0.1}, {}, {}};
+  MotionRows drive;
+  drive.t = {0.1, 0.2};
+  drive.left = drive.right = {0.1, 0.1};
   add_motion(drive, 1, {0.02, 0.03, 0.5}, kRobot);
   EXPECT_EQ(drive.left[0], 0.1);
   EXPECT_NEAR(drive.left[1], 0.02, 1e-15);

@@ -19,8 +19,8 @@ using testing::add_rows;
 constexpr double kWheelbase = 0.4;  // m
 
 /// Rows of 0.1 s: 2 s at rest, 2 s spin left, 3 s ahead at 0.5 m/s, 3 s of a bend, 3 s back.
-Drive plain_drive() {
-  Drive drive;
+MotionRows plain_drive() {
+  MotionRows drive;
   add_rows(drive, 20, 0.0, 0.0);
   add_rows(drive, 20, -0.02, 0.02);
   add_rows(drive, 30, 0.05, 0.05);
@@ -39,7 +39,7 @@ void take(CausalVariables& variables, double left, double right, double duration
   variables.take({left, right}, body_motion({left, right}, kRobot), duration);
 }
 
-std::vector<CausalRow> causal_rows(const Drive& drive) {
+std::vector<CausalRow> causal_rows(const MotionRows& drive) {
   CausalVariables variables;
   std::vector<CausalRow> rows;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
@@ -50,7 +50,7 @@ std::vector<CausalRow> causal_rows(const Drive& drive) {
 }
 
 TEST(CausalVariables, AreThoseOfTheWholeDriveButForRates) {
-  const Drive drive = plain_drive();
+  const MotionRows drive = plain_drive();
   const std::vector<CausalRow> rows = causal_rows(drive);
   const std::vector<Pose> nowhere(drive.rows());
   const RowVariables middle = row_variables(drive, kRobot, {}, nowhere, 0);
@@ -72,7 +72,7 @@ TEST(CausalVariables, AreThoseOfTheWholeDriveButForRates) {
 
 /// Row by row, with loops. Eleven rows of 0.1 s have middles within a second.
 TEST(CausalVariables, RatesAreMeansOverTheLastSecondOfOneKindOfMotion) {
-  const Drive drive = plain_drive();
+  const MotionRows drive = plain_drive();
   const std::vector<CausalRow> rows = causal_rows(drive);
   const std::vector<MotionKind> kinds = motion_kinds(drive);
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -101,7 +101,7 @@ TEST(CausalVariables, RatesAreMeansOverTheLastSecondOfOneKindOfMotion) {
 
 /// From 0.5 m/s on at 0.2 m/s^2: the mean over the last second is 0.1 m/s behind.
 TEST(CausalVariables, RatesAreHalfASecondLateWhileTheyChange) {
-  Drive drive;
+  MotionRows drive;
   for (int k = 0; k < 100; ++k) {
     const double speed = 0.5 + 0.2 * 0.1 * (k + 0.5);  // at the row's middle
     drive.t.push_back(0.1 * (k + 1));

@@ -18,8 +18,8 @@ using testing::add_rows;
 using Values = std::vector<double>;
 
 /// 2 s at rest, 2 s spin left, 3 s ahead at 0.5 m/s, 3 s back; rows of 0.1 s.
-Drive plain_drive() {
-  Drive drive;
+MotionRows plain_drive() {
+  MotionRows drive;
   add_rows(drive, 20, 0.0, 0.0);
   add_rows(drive, 20, -0.02, 0.02);
   add_rows(drive, 30, 0.05, 0.05);
@@ -28,7 +28,7 @@ Drive plain_drive() {
   return drive;
 }
 
-RowVariables variables_of(const Drive& drive) {
+RowVariables variables_of(const MotionRows& drive) {
   return row_variables(drive, Robot{.wheelbase = 0.4}, {}, std::vector<Pose>(drive.rows()), 2);
 }
 
@@ -56,7 +56,7 @@ TEST(RowVariables, RatesAreThoseOfTheMotionAndStayWithinIt) {
 
 /// An angle belongs to the kind of motion in which it is turned, and counts without sign.
 TEST(RowVariables, TurningIsToldByTheMotionItBelongsTo) {
-  Drive drive = plain_drive();
+  MotionRows drive = plain_drive();
   for (int k = 0; k < 20; ++k) {  // a bend to the right: 0.4 m/s, -0.5 rad/s
     drive.t.push_back(drive.t.back() + 0.1);
     drive.left.push_back(0.05);
@@ -100,7 +100,7 @@ TEST(RowVariables, TimeAndDistanceAreAtTheRowsMiddle) {
 
 /// Encoder noise of single rows is averaged over ten of them.
 TEST(RowVariables, RatesAreSmoothed) {
-  Drive drive = plain_drive();
+  MotionRows drive = plain_drive();
   for (std::size_t row = 40; row < 70; ++row) {
     drive.left[row] += row % 2 == 0 ? 0.01 : -0.01;
     drive.right[row] += row % 2 == 0 ? 0.01 : -0.01;

@@ -38,7 +38,8 @@ Recording recording_of(const std::vector<std::string>& columns,
   return recording;
 }
 
-void expect_motion(const Drive& drive, const std::vector<Twist>& expected, const Robot& robot) {
+void expect_motion(const MotionRows& drive, const std::vector<Twist>& expected,
+                   const Robot& robot) {
   for (std::size_t row = 0; row < expected.size(); ++row) {
     EXPECT_NEAR(0.5 * (drive.left[row] + drive.right[row]), expected[row].f, 1e-14);
     EXPECT_NEAR(drive.slip(row), expected[row].s, 1e-14);
@@ -49,14 +50,14 @@ void expect_motion(const Drive& drive, const std::vector<Twist>& expected, const
 /// by_reading against differences of what a slightly other reading makes of the row.
 void expect_derivatives(const Recording& recording, const Robot& robot) {
   constexpr double kStep = 1e-6;
-  const Recording here = with_wheels(recording, robot);
+  const DrivenRecording here = with_wheels(recording, robot);
   for (std::size_t k = 0; k < robot.columns.size(); ++k) {
     Recording more = recording;
     Recording less = recording;
     for (double& one : more.drive.covariates[k].values) one += kStep;
     for (double& one : less.drive.covariates[k].values) one -= kStep;
-    const Drive up = with_wheels(more, robot).drive;
-    const Drive down = with_wheels(less, robot).drive;
+    const MotionRows up = with_wheels(more, robot).drive;
+    const MotionRows down = with_wheels(less, robot).drive;
     for (std::size_t row = 0; row < up.rows(); ++row) {
       const std::array<double, 3>& by = here.drive.wheels[k].by_reading[row];
       const double left = (up.left[row] - down.left[row]) / (2.0 * kStep);
@@ -101,7 +102,7 @@ TEST(WheelColumns, SkidSteerTakesTheMeansOfItsSides) {
   robot.wheelbase = 0.8;
   robot.columns = {"fl", "rl", "fr", "rr"};
   const Recording recording = recording_of(robot.columns, {{0.1}, {0.3}, {0.5}, {0.7}});
-  const Drive drive = with_wheels(recording, robot).drive;
+  const MotionRows drive = with_wheels(recording, robot).drive;
   EXPECT_NEAR(drive.left[0], 0.2, 1e-15);
   EXPECT_NEAR(drive.right[0], 0.6, 1e-15);
   EXPECT_TRUE(drive.sideways.empty());
@@ -128,7 +129,7 @@ TEST(WheelColumns, AnyWheelsAtAnyPlaces) {
     }
     robot.matrix = wheel_matrix(robot.places);
     const Recording recording = recording_of(robot.columns, readings);
-    const Drive drive = with_wheels(recording, robot).drive;
+    const MotionRows drive = with_wheels(recording, robot).drive;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       EXPECT_NEAR(0.5 * (drive.left[row] + drive.right[row]), twists(true)[row].f, 1e-11);
       EXPECT_NEAR(drive.slip(row), twists(true)[row].s, 1e-11);
@@ -154,7 +155,7 @@ TEST(WheelColumns, WhatShowsTooLittleIsRefused) {
 TEST(WheelColumns, TwoNamedWheelsAreADifferentialDrive) {
   Robot robot;
   robot.columns = {"port", "starboard"};
-  const Drive drive =
+  const MotionRows drive =
       with_wheels(recording_of({"port", "starboard"}, {{0.1, 0.2}, {0.3, 0.4}}), robot).drive;
   EXPECT_EQ(drive.left, (std::vector<double>{0.1, 0.2}));
   EXPECT_EQ(drive.right, (std::vector<double>{0.3, 0.4}));

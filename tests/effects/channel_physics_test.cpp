@@ -187,7 +187,10 @@ TEST_P(EveryChannel, LeavesTheRobotsMotionWhereARecordingIsFreedFromIt) {
   std::mt19937_64 random(3);
   for (int k = 0; k < 50; ++k) {
     const RowMotion row = any_row(random);
-    Drive drive{{0.1, 0.2}, {row.left, row.left}, {row.right, row.right}, {}, {}};
+    MotionRows drive;
+    drive.t = {0.1, 0.2};
+    drive.left = {row.left, row.left};
+    drive.right = {row.right, row.right};
     free_drive(GetParam(), {0.07, 0.07}, kRobot, drive);
     const Eigen::Vector4d did = motion(GetParam(), 0.07, row);
     EXPECT_NEAR(0.5 * (drive.left[1] + drive.right[1]), did[0], 1e-15);

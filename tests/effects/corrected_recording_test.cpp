@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kWheelbase = 0.5;
 
-Recording recording() {
-  Recording r;
+DrivenRecording recording() {
+  DrivenRecording r;
   r.drive.t = {1.0, 2.0, 3.0};
   r.drive.left = {0.2, -0.1, 0.4};
   r.drive.right = {0.2, 0.1, 0.6};
@@ -28,11 +28,11 @@ Recording recording() {
   return r;
 }
 
-Recording corrected(Channel channel, const Shape& shape, double coefficient) {
+DrivenRecording corrected(Channel channel, const Shape& shape, double coefficient) {
   Model model;
   model.robot.wheelbase = kWheelbase;
   model.effects.push_back({"test", channel, {shape}, {coefficient}, false});
-  const Recording r = recording();
+  const DrivenRecording r = recording();
   return corrected_recording(
       r, model, row_variables(r.drive, Robot{.wheelbase = kWheelbase}, {}, std::vector<Pose>(3), 0),
       0);
@@ -50,7 +50,7 @@ TEST(CorrectedRecording, EveryWheelChannelDoesWhatTheTableSays) {
                          Row{Channel::difference, 0.505, 0.5}, Row{Channel::turn, 0.5, 0.44},
                          Row{Channel::drift, 0.5, 0.5}, Row{Channel::advance, 0.6, 0.4},
                          Row{Channel::rotate, 0.5, 0.5}}) {
-    const Drive drive = corrected(row.channel, "1", g).drive;
+    const MotionRows drive = corrected(row.channel, "1", g).drive;
     EXPECT_NEAR(0.5 * (drive.left[2] + drive.right[2]), row.travel, 1e-14) << name_of(row.channel);
     EXPECT_NEAR((drive.right[2] - drive.left[2]) / kWheelbase, row.turn, 1e-14)
         << name_of(row.channel);
@@ -58,7 +58,7 @@ TEST(CorrectedRecording, EveryWheelChannelDoesWhatTheTableSays) {
 }
 
 TEST(CorrectedRecording, ShapesAreEvaluatedRowByRow) {
-  const Drive drive = corrected(Channel::left, "payload_kg", 0.01).drive;
+  const MotionRows drive = corrected(Channel::left, "payload_kg", 0.01).drive;
   EXPECT_NEAR(drive.left[0], 0.2, 1e-15);
   EXPECT_NEAR(drive.left[1], -0.11, 1e-15);
   EXPECT_NEAR(drive.left[2], 0.48, 1e-15);

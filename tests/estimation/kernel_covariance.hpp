@@ -30,7 +30,7 @@ struct Piece {
   double reading = kAbsent;
 };
 
-inline std::vector<Piece> pieces_between(const Drive& drive, double from, double to) {
+inline std::vector<Piece> pieces_between(const MotionRows& drive, double from, double to) {
   std::vector<Piece> pieces;
   double driven = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
@@ -166,7 +166,7 @@ inline double covariance_of(ProcessKind process, double length, std::size_t i, s
 /// difference, turn, drift, compass; range and bearing. Legs are those between landmarks that the
 /// robot stands on.
 inline Eigen::MatrixXd process_covariance(const RecordingProblem& problem,
-                                          const std::vector<Recording>& recordings,
+                                          const std::vector<DrivenRecording>& recordings,
                                           const Model& model, const NoiseProcess& process) {
   const bool by_distance = process.process == ProcessKind::correlated_in_distance ||
                            process.process == ProcessKind::walk_in_distance;
@@ -180,7 +180,7 @@ inline Eigen::MatrixXd process_covariance(const RecordingProblem& problem,
     source.session = one.session;
     rows += one.rows;
     if (one.session < 0 || of_views == (one.kind == &kinds::segment)) continue;
-    const Recording& recording = recordings[idx(one.session)];
+    const DrivenRecording& recording = recordings[idx(one.session)];
     const double start = 2.0 * recording.drive.t[0] - recording.drive.t[1];
     const double t = problem.poses[idx(one.from - problem.landmark_count())].t;
     const auto leg_of = [&recording](double at) {

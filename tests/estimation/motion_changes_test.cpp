@@ -8,7 +8,7 @@ namespace trussmap::motion_changes_test {
 namespace {
 
 /// So many rows of 0.1 s of these travels.
-void add(Drive& drive, int rows, double left, double right) {
+void add(MotionRows& drive, int rows, double left, double right) {
   for (int k = 0; k < rows; ++k) {
     drive.t.push_back(0.1 * static_cast<double>(drive.rows() + 1));
     drive.left.push_back(left);
@@ -16,14 +16,14 @@ void add(Drive& drive, int rows, double left, double right) {
   }
 }
 
-std::vector<double> changes(const Drive& drive) {
+std::vector<double> changes(const MotionRows& drive) {
   const Robot robot{0.3};
   return motion_changes(drive, segment_rows(drive, drive.start(), drive.t.back(), robot), robot,
                         {});
 }
 
 TEST(MotionChanges, ASpinAndADriveAreTwoMotions) {
-  Drive drive;
+  MotionRows drive;
   add(drive, 10, -0.03, 0.03);
   add(drive, 10, 0.1, 0.1);
   ASSERT_EQ(changes(drive).size(), 1U);
@@ -32,7 +32,7 @@ TEST(MotionChanges, ASpinAndADriveAreTwoMotions) {
 
 /// The heading after it is as uncertain as all that was turned.
 TEST(MotionChanges, ASpinThereAndBackIsAMotion) {
-  Drive drive;
+  MotionRows drive;
   add(drive, 10, -0.03, 0.03);
   add(drive, 10, 0.03, -0.03);
   add(drive, 10, 0.1, 0.1);
@@ -41,7 +41,7 @@ TEST(MotionChanges, ASpinThereAndBackIsAMotion) {
 }
 
 TEST(MotionChanges, ATwitchIsNone) {
-  Drive drive;
+  MotionRows drive;
   add(drive, 10, 0.1, 0.1);
   add(drive, 1, -0.01, 0.01);
   add(drive, 10, 0.1, 0.1);

@@ -101,8 +101,8 @@ TEST(Multilateration, TakesThree) {
 }
 
 /// What a robot with a range sensor records, its bearings and stops taken away.
-Recording ranges_alone(std::uint64_t seed, bool compass) {
-  Recording recording =
+DrivenRecording ranges_alone(std::uint64_t seed, bool compass) {
+  DrivenRecording recording =
       testing::simulate_recording({.compass = compass, .range_sensor = true}, seed).recording;
   std::erase_if(recording.sightings, [](const Sighting& one) { return one.standing(); });
   for (Sighting& one : recording.sightings) one.bearing = kAbsent;
@@ -115,7 +115,7 @@ TEST(RangesAlone, MakeAMap) {
   double chi2 = 0.0;
   double dof = 0.0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const Recording recording = ranges_alone(seed, seed % 2 == 0);
+    const DrivenRecording recording = ranges_alone(seed, seed % 2 == 0);
     const BuiltMap built = build_map({recording}, testing::simulate_recording({}, 1).model);
     ASSERT_TRUE(built.on_survey);
     EXPECT_EQ(built.legs, 0);
@@ -129,8 +129,8 @@ TEST(RangesAlone, MakeAMap) {
 
 /// A drive straight past a beacon 5 m to its left, and two landmarks that range and
 /// bearing place.
-Recording past_a_beacon(SensorParts parts) {
-  Recording recording;
+DrivenRecording past_a_beacon(SensorParts parts) {
+  DrivenRecording recording;
   recording.name = "past a beacon";
   for (int k = 1; k <= 100; ++k) {
     recording.drive.t.push_back(0.5 * k);
@@ -159,14 +159,14 @@ bool say_the_mirror(const std::vector<std::string>& warnings) {
 }
 
 TEST(RangesAlone, OneLineIsSaid) {
-  const Recording recording = past_a_beacon(SensorParts::range_alone);
+  const DrivenRecording recording = past_a_beacon(SensorParts::range_alone);
   EXPECT_TRUE(say_the_mirror(fit_model({recording}, Model{}).warnings));
   EXPECT_TRUE(say_the_mirror(build_map({recording}, Model{}).warnings));
 }
 
 TEST(RangesAlone, ABearingTellsTheSide) {
   for (const SensorParts parts : {SensorParts::both, SensorParts::bearing_alone}) {
-    const Recording recording = past_a_beacon(parts);
+    const DrivenRecording recording = past_a_beacon(parts);
     EXPECT_FALSE(say_the_mirror(fit_model({recording}, Model{}).warnings));
     EXPECT_FALSE(say_the_mirror(build_map({recording}, Model{}).warnings));
   }

@@ -5,6 +5,7 @@
 // generalised least squares under the whole dense covariance.
 #include "estimation/noise_states.hpp"
 
+#include "driven.hpp"
 #include "effects/channel_physics.hpp"
 #include "estimation/kernel_covariance.hpp"
 #include "estimation/kinds/kinds.hpp"
@@ -37,10 +38,10 @@ const Robot kRobot{0.34};
 
 /// Rows of unequal durations: bows ahead and back, rests, some readings missing. The robot stands
 /// on landmarks at the ends of rows and within them.
-Recording uneven_recording(std::uint64_t seed) {
+DrivenRecording uneven_recording(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  Recording recording;
+  DrivenRecording recording;
   recording.name = "uneven";
   double t = 3.0;
   double heading = 0.0;
@@ -131,7 +132,7 @@ class NoiseStates : public ::testing::TestWithParam<Lasting> {};
 /// 0.3 rad over 10 m), integrals to 1e-13, a row's conditional variance to 1e-11 (cancellation of
 /// rounding 2e-16 over x^3); sums have some 20 terms.
 TEST_P(NoiseStates, HaveTheCovarianceOfTheKernel) {
-  const std::vector<Recording> recordings = {uneven_recording(1), uneven_recording(2)};
+  const std::vector<DrivenRecording> recordings = {uneven_recording(1), uneven_recording(2)};
   Model model;
   model.robot = kRobot;
   ProblemOptions options;
@@ -196,7 +197,7 @@ INSTANTIATE_TEST_SUITE_P(EveryProcess, NoiseStates, ::testing::ValuesIn(all_last
 /// small as x, and must not drown in rounding. One segment of 20 rows of 0.1 s; what is within it
 /// grows as 1/length for long ones, up to terms of x = 2 s/length.
 TEST(NoiseStatesWithin, OfASlowProcessGoesAsOneOverItsLength) {
-  Recording recording;
+  DrivenRecording recording;
   for (int row = 0; row < 21; ++row) {
     recording.drive.t.push_back(0.1 * (row + 1));
     recording.drive.left.push_back(0.05);
@@ -209,7 +210,7 @@ TEST(NoiseStatesWithin, OfASlowProcessGoesAsOneOverItsLength) {
   recording.sightings[1].t = 2.1;
   recording.sightings[1].landmark = "b";
   const RecordingProblem problem = make_problem({recording}, {});
-  const std::vector<Recording> recordings = {recording};
+  const std::vector<DrivenRecording> recordings = {recording};
   const ProcessLayer layer(problem, recordings, {});
   const auto within = [&](double length) {
     return layer.lay(Channel::travel, ProcessKind::correlated_in_t, length).within.front()(0, 0);
@@ -224,7 +225,7 @@ TEST(NoiseStatesWithin, OfASlowProcessGoesAsOneOverItsLength) {
 /// The robot turns on the spot from one sighting to the next: no way at all between poses. The
 /// variance of a step is never less than 1e-8.
 TEST(NoiseStatesWithin, AnyWayAProcessMayStandStill) {
-  Recording recording;
+  DrivenRecording recording;
   for (int row = 0; row < 40; ++row) {
     const bool spins = row / 10 % 2 == 1;
     recording.drive.t.push_back(0.1 * (row + 1));
@@ -239,7 +240,7 @@ TEST(NoiseStatesWithin, AnyWayAProcessMayStandStill) {
   }
   Model model;
   model.robot = kRobot;
-  const std::vector<Recording> recordings = {recording};
+  const std::vector<DrivenRecording> recordings = {recording};
   const RecordingProblem problem = make_problem(recordings, model);
   const ProcessLayer layer(problem, recordings, kRobot);
   for (const ProcessKind process :
@@ -254,9 +255,9 @@ TEST(NoiseStatesWithin, AnyWayAProcessMayStandStill) {
 
 /// Session, t and landmark of views.
 RecordingProblem views_only(const std::vector<std::pair<double, const char*>>& seen,
-                            std::vector<Recording>& recordings, double resting_from = 100.0,
+                            std::vector<DrivenRecording>& recordings, double resting_from = 100.0,
                             double resting_to = 100.0) {
-  Recording recording;
+  DrivenRecording recording;
   for (int row = 0; row < 300; ++row) {
     const double t = 0.1 * (row + 1);
     const bool rests = t > resting_from + 0.05 && t < resting_to + 0.05;
@@ -288,7 +289,7 @@ std::vector<int> states_of(const RecordingProblem& problem, const LaidProcess& l
 }
 
 TEST(NoiseStatesOfViews, LastAsLongAsALandmarkIsNeverUnseenForLong) {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   // b is unseen for 5.5 s, a never for more than 4.
   const RecordingProblem problem = views_only(
       {{1.0, "a"}, {1.0, "b"}, {5.0, "a"}, {6.5, "b"}, {7.0, "b"}, {9.0, "a"}}, recordings);
@@ -314,7 +315,7 @@ TEST(NoiseStatesOfViews, LastAsLongAsALandmarkIsNeverUnseenForLong) {
 
 /// Where the robot stands on no landmark, legs end with its rests, also within a segment.
 TEST(NoiseStatesOfLegs, EndWithRests) {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   const RecordingProblem problem =
       views_only({{2.0, "a"}, {8.0, "a"}, {16.0, "a"}, {20.0, "a"}}, recordings, 10.0, 11.0);
   const ProcessLayer layer(problem, recordings, {});
@@ -343,7 +344,7 @@ TEST(NoiseStatesOfLegs, EndWithRests) {
 
 /// What is seen at the instant of a stop belongs to the leg that ends there.
 TEST(NoiseStatesOfLegs, EndWhereTheRobotStandsOnALandmark) {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   views_only({{2.0, "a"}, {5.0, "a"}, {5.0, "b"}, {8.0, "a"}}, recordings);
   recordings[0].sightings[2].range = recordings[0].sightings[2].bearing = kAbsent;
   const RecordingProblem problem = make_problem(recordings, {});
@@ -360,9 +361,9 @@ TEST(NoiseStatesOfLegs, EndWhereTheRobotStandsOnALandmark) {
 // The adjustment against dense generalised least squares.
 
 /// One tour each of a 3x3 mesh, with rows of 0.5 s; a range sensor that meets landmarks again.
-std::vector<Recording> tours(std::uint64_t seed, bool compass, bool survey) {
+std::vector<DrivenRecording> tours(std::uint64_t seed, bool compass, bool survey) {
   const Mesh mesh = mesh_of_lines({0.0, 4.0, 9.0}, {0.0, 3.0, 7.0});
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   for (const std::uint64_t session : {seed, seed + 1}) {
     std::mt19937_64 random = random_stream(session, Stream::walk);
     const Tours walk = make_tours(mesh, WalkKind::euler, 1, random);
@@ -372,7 +373,8 @@ std::vector<Recording> tours(std::uint64_t seed, bool compass, bool survey) {
     robot.recognition = 0.4;
     DrivingStyle style;
     style.row_duration = 0.5;
-    Recording recording = simulate_drive(mesh, walk.walk, style, robot, session).recording;
+    DrivenRecording recording =
+        testing::driven(simulate_drive(mesh, walk.walk, style, robot, session).recording);
     recording.name = "tour " + std::to_string(session);
     if (!survey) recording.survey.clear();
     recordings.push_back(std::move(recording));
@@ -483,7 +485,7 @@ class AdjustmentWithLastingNoise : public ::testing::TestWithParam<Setting> {};
 /// logarithms of some 1000 pivots add up to 1e3, good to 1e-10 each.
 TEST_P(AdjustmentWithLastingNoise, IsGeneralisedLeastSquares) {
   const auto& [name, seed, compass, survey] = GetParam();
-  const std::vector<Recording> recordings = tours(seed, compass, survey);
+  const std::vector<DrivenRecording> recordings = tours(seed, compass, survey);
   const Model model = lasting_model(compass);
   const RecordingProblem plain = make_problem(recordings, without_processes(model));
   const RecordingProblem problem = make_problem(recordings, model);
@@ -544,8 +546,8 @@ INSTANTIATE_TEST_SUITE_P(EverySetting, AdjustmentWithLastingNoise,
                          [](const auto& one) { return std::string(one.param.name); });
 
 /// What the robot records where it has a constant g of compass, range, bearing or turn.
-void disturb(Recording& recording, Channel channel, double g) {
-  Drive& drive = recording.drive;
+void disturb(DrivenRecording& recording, Channel channel, double g) {
+  MotionRows& drive = recording.drive;
   if (channel == Channel::compass) {
     for (double& reading : drive.heading) reading = wrap_angle(reading + g);
   }
@@ -567,12 +569,12 @@ void disturb(Recording& recording, Channel channel, double g) {
 /// and with g = 0.004 a share of 1e-2 of the coefficient.
 TEST(LastingNoise, OfASessionIsAConstantEffectWithAPrior) {
   constexpr double kSd = 0.05;
-  const std::vector<Recording> undisturbed = {tours(7, true, true).front()};
+  const std::vector<DrivenRecording> undisturbed = {tours(7, true, true).front()};
   const Model model = without_processes(lasting_model(true));
   for (const auto& [channel, g, share] :
        {std::tuple(Channel::compass, 0.06, 1e-6), std::tuple(Channel::range, 0.08, 1e-6),
         std::tuple(Channel::bearing, -0.05, 1e-6), std::tuple(Channel::turn, 0.004, 1e-2)}) {
-    std::vector<Recording> recordings = undisturbed;
+    std::vector<DrivenRecording> recordings = undisturbed;
     disturb(recordings[0], channel, g);
     EffectPattern effect;
     if (acts_on(channel) == ActsOn::views) {
@@ -602,7 +604,7 @@ TEST(LastingNoise, OfASessionIsAConstantEffectWithAPrior) {
 /// A process of sd 1e-9 adds at most 1e-9 of what one unit does, some 10 m or 10 rad, to errors of
 /// 1e-5 and more: shares of 1e-6 in variances.
 TEST(LastingNoise, OfNoSizeChangesNothing) {
-  const std::vector<Recording> recordings = tours(7, true, true);
+  const std::vector<DrivenRecording> recordings = tours(7, true, true);
   Model model = lasting_model(true);
   for (NoiseProcess& one : model.noise.processes) one.sd = 1e-9;
   const RecordingAdjustment with = adjust(make_problem(recordings, model));
@@ -618,7 +620,7 @@ TEST(LastingNoise, OfNoSizeChangesNothing) {
 }
 
 TEST(LastingNoise, WhereThereIsNoneLeavesAProblemAsItIs) {
-  const std::vector<Recording> recordings = tours(7, true, true);
+  const std::vector<DrivenRecording> recordings = tours(7, true, true);
   const Model model = without_processes(lasting_model(true));
   const RecordingProblem problem = make_problem(recordings, model);
   EXPECT_TRUE(problem.noise_states.empty());
@@ -632,7 +634,7 @@ TEST(LastingNoise, WhereThereIsNoneLeavesAProblemAsItIs) {
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     if (one.kind == &kinds::segment) {
-      const Drive& drive = recordings[idx(one.session)].drive;
+      const MotionRows& drive = recordings[idx(one.session)].drive;
       const Matrix4 C =
           segment_covariance(drive, problem.segments[one.source], model.robot, model.noise);
       EXPECT_EQ(one.whitener, whitener_of(C, one.rows));
@@ -649,7 +651,7 @@ TEST(LastingNoise, WhereThereIsNoneLeavesAProblemAsItIs) {
 // The system's own algebra.
 
 struct Linearised {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   RecordingProblem problem;
   EffectParameters border;
   RecordingState state;
@@ -827,7 +829,7 @@ TEST(ProjectionWithStates, BlocksAreThoseOfTheDenseOne) {
 
 /// Prior covariances of segments, of two processes at once, with their own sizes.
 TEST(LastingNoise, OfASegmentIsWhatItsStatesAdd) {
-  const std::vector<Recording> recordings = tours(7, true, true);
+  const std::vector<DrivenRecording> recordings = tours(7, true, true);
   Model model = lasting_model(true);
   const RecordingProblem plain = make_problem(recordings, without_processes(model));
   const RecordingProblem problem = make_problem(recordings, model);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_adjustment.hpp"
 
+#include "driven.hpp"
 #include "estimation/kinds/kinds.hpp"
 #include "estimation/recording_start.hpp"
 #include "estimation/recording_system.hpp"
@@ -133,7 +134,7 @@ TEST(RecordingAdjustment, TruthRowsAreMeasurementsToo) {
   WheeledRobot robot;
   robot.compass = false;
   const SimulatedDrive drive = simulate_drive(mesh, tours.walk, {}, robot, 3);
-  Recording recording = drive.recording;
+  DrivenRecording recording = testing::driven(drive.recording);
   recording.sightings.clear();
   recording.survey.clear();
   Model model;
@@ -181,7 +182,7 @@ TEST(RecordingAdjustment, DriftingHeadingsDoNotSpoilTheStart) {
   robot.compass = false;
   robot.noise.left = robot.noise.right = 0.02;
   const SimulatedDrive drive = simulate_drive(mesh, tours.walk, {}, robot, 5);
-  Recording recording = drive.recording;
+  DrivenRecording recording = testing::driven(drive.recording);
   recording.survey.clear();
   Model model;
   model.noise.left = model.noise.right = 0.02;

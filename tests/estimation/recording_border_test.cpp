@@ -22,7 +22,7 @@ using testing::SimulatedRecording;
 
 /// Wheelbase and compass offset in the data: what the robot records if its wheels stand
 /// (1 + turn) apart relative to the nominal, and its compass is off.
-void disturb(Drive& drive, double wheelbase, double turn, double offset) {
+void disturb(MotionRows& drive, double wheelbase, double turn, double offset) {
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     // True turn = recorded turn (1 + g): the wheels went less far apart than they should have.
     const double path = 0.5 * (drive.left[row] + drive.right[row]);
@@ -41,7 +41,7 @@ struct Case {
 Case two_effects(std::uint64_t seed, double turn, double offset) {
   SimulatedRecording simulated = simulate_recording({}, seed);
   disturb(simulated.recording.drive, simulated.model.robot.wheelbase, turn, offset);
-  const std::vector<Recording> recordings = {simulated.recording};
+  const std::vector<DrivenRecording> recordings = {simulated.recording};
   return {make_problem(recordings, simulated.model),
           {plain_effect(Channel::turn, recordings, simulated.model.robot),
            plain_effect(Channel::compass, recordings, simulated.model.robot)}};
@@ -120,7 +120,7 @@ TEST(RecordingEffectParameters, ViewPatternsActLikeTheSensorsOffsets) {
 TEST(RecordingEffectParameters, AnUndeterminedCoefficientIsNamed) {
   // Without a survey a constant compass offset only turns the map.
   SimulatedRecording simulated = simulate_recording({true, false, false, 1}, 2);
-  const std::vector<Recording> recordings = {simulated.recording};
+  const std::vector<DrivenRecording> recordings = {simulated.recording};
   const RecordingProblem problem = make_problem(recordings, simulated.model);
   const EffectParameters border = {
       plain_effect(Channel::turn, recordings, simulated.model.robot),

@@ -14,10 +14,10 @@ constexpr double kWheelbase = 0.34;
 const Robot kRobot{kWheelbase};
 
 /// A bow, a turn on the spot and a straight line, in small rows; compass in every third.
-Drive drive_with_compass(int rows, std::uint64_t seed) {
+MotionRows drive_with_compass(int rows, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  Drive drive;
+  MotionRows drive;
   double heading = 3.0;  // near where angles wrap
   for (int k = 0; k < rows; ++k) {
     const double phase = static_cast<double>(k) / rows;
@@ -37,12 +37,12 @@ Vector4 numbers(const SegmentMotion& motion) {
           motion.mean_heading};
 }
 
-Vector4 numbers_of(const Drive& drive) {
+Vector4 numbers_of(const MotionRows& drive) {
   return numbers(segment_motion(segment_rows(drive, 0.0, drive.t.back(), kRobot)));
 }
 
 /// Central difference by one of the drive's numbers.
-Vector4 slope_by(Drive drive, std::vector<double> Drive::*column, std::size_t row) {
+Vector4 slope_by(MotionRows drive, std::vector<double> MotionRows::*column, std::size_t row) {
   constexpr double kStep = 1e-6;
   (drive.*column)[row] += kStep;
   const Vector4 after = numbers_of(drive);
@@ -55,17 +55,18 @@ TEST(SegmentMotion, CovarianceIsThatOfIndependentWheelsAndReadings) {
   // short, so it hardly matters that the closed form lets the noise arise all along a row.
   Noise noise;
   noise.right = 0.005;
-  const Drive drive = drive_with_compass(600, 1);
+  const MotionRows drive = drive_with_compass(600, 1);
   Matrix4 expected = Matrix4::Zero();
   const auto add = [&expected](const Vector4& slope, double variance) {
     expected += variance * slope * slope.transpose();
   };
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    add(slope_by(drive, &Drive::left, row), noise.left * noise.left * std::abs(drive.left[row]));
-    add(slope_by(drive, &Drive::right, row),
+    add(slope_by(drive, &MotionRows::left, row),
+        noise.left * noise.left * std::abs(drive.left[row]));
+    add(slope_by(drive, &MotionRows::right, row),
         noise.right * noise.right * std::abs(drive.right[row]));
     if (!std::isnan(drive.heading[row])) {
-      add(slope_by(drive, &Drive::heading, row), noise.compass * noise.compass);
+      add(slope_by(drive, &MotionRows::heading, row), noise.compass * noise.compass);
     }
   }
   const auto rows = segment_rows(drive, 0.0, drive.t.back(), kRobot);
@@ -80,7 +81,7 @@ TEST(SegmentMotion, CovarianceIsThatOfIndependentWheelsAndReadings) {
 }
 
 TEST(SegmentMotion, WithoutReadingsThereIsNoMeanHeading) {
-  Drive drive = drive_with_compass(30, 2);
+  MotionRows drive = drive_with_compass(30, 2);
   drive.heading.clear();
   const auto rows = segment_rows(drive, 0.0, drive.t.back(), kRobot);
   EXPECT_EQ(readings_of(rows), 0);
@@ -93,7 +94,7 @@ TEST(SegmentMotion, MeanHeadingIsTheStartHeadingWhereverItWraps) {
 }
 
 TEST(SegmentMotion, AMergedSegmentIsTheSumOfItsParts) {
-  const Drive drive = drive_with_compass(60, 4);
+  const MotionRows drive = drive_with_compass(60, 4);
   const auto motion = [&](double from, double to) {
     return segment_motion(segment_rows(drive, from, to, kRobot)).displacement;
   };
@@ -106,7 +107,7 @@ TEST(SegmentMotion, AMergedSegmentIsTheSumOfItsParts) {
 }
 
 TEST(SegmentMotion, DerivativesByEffectsAreThoseOfDifferences) {
-  const Drive drive = drive_with_compass(50, 5);
+  const MotionRows drive = drive_with_compass(50, 5);
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(-0.01, 0.01);
   std::vector<std::vector<DrivePattern>> patterns(3);

@@ -22,7 +22,7 @@ const Robot kRobot{kWheelbase};
 
 /// A bow, a turn on the spot, and back; the last row is cut.
 struct Segment {
-  Drive drive;
+  MotionRows drive;
   std::vector<SegmentRow> rows;
 };
 

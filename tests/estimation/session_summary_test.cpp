@@ -69,7 +69,7 @@ TEST(SecondOrder, IsWhatSecondDifferencesGive) {
   robot.fix_rate = 0.5;
   robot.loops = robot.markers = robot.range_sensor = true;
   Days days = days_of(robot, true, 1, 161);
-  Recording& recording = days.recordings[0];
+  DrivenRecording& recording = days.recordings[0];
   for (std::size_t k = 1; k < recording.sightings.size(); k += 9) {
     const double t = recording.sightings[k].t;
     if (recording.truth.empty() || t > recording.truth.back().t) {

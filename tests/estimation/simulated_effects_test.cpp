@@ -4,6 +4,7 @@
 // The simulator turns the physics round, the adjustment has it the right way round; neither knows
 // the other. Without noise they must meet at chi^2 = 0 and at the coefficients that were given.
 #include "drive/row_variables.hpp"
+#include "driven.hpp"
 #include "estimation/recording_adjustment.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/simulation.hpp"
@@ -40,7 +41,8 @@ Simulated simulate(const Effect& effect) {
 }
 
 /// What one unit of g does to a row, by the table of channels.
-DrivePattern by_the_table(Channel channel, const Drive& drive, std::size_t row, double wheelbase) {
+DrivePattern by_the_table(Channel channel, const MotionRows& drive, std::size_t row,
+                          double wheelbase) {
   const double left = drive.left[row];
   const double right = drive.right[row];
   const double path = 0.5 * (left + right);
@@ -72,7 +74,7 @@ ViewPattern by_the_table(Channel channel) {
 
 /// A coefficient of the model per shape; shapes are constant where a view is concerned.
 EffectParameters border_of(const Effect& effect, const Simulated& simulated) {
-  const Drive& drive = simulated.drive.recording.drive;
+  const MotionRows drive = testing::driven(simulated.drive.recording).drive;
   const TrueMotion& motion = simulated.drive.motion;
   std::vector<Pose> path;
   for (const TrueRow& row : motion.rows) path.push_back(row.pose);
@@ -131,7 +133,8 @@ TEST(SimulatedEffects, AFitFindsTheCoefficientsThatWereGiven) {
                                        catalogue_effect("bearing offset", {0.03})};
   for (const Effect& effect : effects) {
     const Simulated simulated = simulate(effect);
-    const RecordingProblem problem = make_problem({simulated.drive.recording}, Model{});
+    const RecordingProblem problem =
+        make_problem({testing::driven(simulated.drive.recording)}, Model{});
     const double without = adjust(problem).chi2;
     const RecordingAdjustment with = adjust(problem, border_of(effect, simulated));
     EXPECT_GT(without, 1.0) << effect.name;

@@ -4,6 +4,7 @@
 // Recordings with a known truth, for the tests of the adjustment.
 #pragma once
 
+#include "driven.hpp"
 #include "estimation/recording_adjustment.hpp"
 #include "trussmap/simulation.hpp"
 
@@ -23,7 +24,8 @@ struct Equipment {
 };
 
 struct SimulatedRecording {
-  Recording recording;
+  DrivenRecording recording;
+  Recording read;                        ///< the same, as it is read
   Model model;                           ///< the true one
   std::map<std::string, Vector2> truth;  ///< landmarks in the frame that the adjustment uses
 };
@@ -39,7 +41,8 @@ inline SimulatedRecording simulate_recording(const Equipment& equipment, std::ui
   SimulatedDrive drive = simulate_drive(mesh, tours.walk, {}, robot, seed);
   if (!equipment.survey) drive.recording.survey.clear();
   SimulatedRecording result;
-  result.recording = std::move(drive.recording);
+  result.recording = driven(drive.recording);
+  result.read = std::move(drive.recording);
   for (int k = 0; k < mesh.landmarks(); ++k) {
     result.truth[landmark_name(mesh, k)] = mesh.positions[idx(k)];
   }
@@ -62,7 +65,8 @@ inline SimulatedRecording simulate_exactly(const Equipment& equipment, std::uint
   SimulatedDrive drive = simulate_drive(mesh, tours.walk, style, robot, seed);
   if (!equipment.survey) drive.recording.survey.clear();
   SimulatedRecording result;
-  result.recording = std::move(drive.recording);
+  result.recording = driven(drive.recording);
+  result.read = std::move(drive.recording);
   for (int k = 0; k < mesh.landmarks(); ++k) {
     result.truth[landmark_name(mesh, k)] = mesh.positions[idx(k)];
   }

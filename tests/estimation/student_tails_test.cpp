@@ -33,13 +33,13 @@ constexpr double kBearingSd = 0.06;    // rad
 constexpr double kNormalShare = 0.05;  // stated beside the tails: no noise may be 0
 
 /// Views whose errors have a bivariate t distribution of these standard deviations.
-Recording with_tails(std::uint64_t seed, double range_bias) {
+DrivenRecording with_tails(std::uint64_t seed, double range_bias) {
   InvertedOptions options;
   options.noisy = true;
   options.views = true;
   options.survey = false;
   const InvertedRecording world = invert({}, options, seed);
-  Recording recording = world.recording;
+  DrivenRecording recording = world.recording;
   std::mt19937_64 random(seed + 17);
   std::normal_distribution<double> normal;
   std::chi_squared_distribution<double> chi_square(kTails);
@@ -115,7 +115,7 @@ TEST(StudentTails, InformationIsTheScoresVariance) {
 
 // The derivative of the likelihood by the range's bias vanishes at the fit, errors reckoned here.
 TEST(StudentTails, TheFitIsTheLikeliest) {
-  const Recording recording = with_tails(71, 0.05);
+  const DrivenRecording recording = with_tails(71, 0.05);
   const ModelFit fit = fit_model({recording}, with_range_bias(with_noise(kTails)));
   const RecordingProblem& problem = fit.state->problem;
   const RecordingState& state = fit.state->adjustment.state;
@@ -156,7 +156,7 @@ Spread spread_of(double tails, int recordings) {
   constexpr double kBias = 0.05;  // m
   Spread sum;
   for (int k = 0; k < recordings; ++k) {
-    const Recording recording = with_tails(1000 + static_cast<std::uint64_t>(k), kBias);
+    const DrivenRecording recording = with_tails(1000 + static_cast<std::uint64_t>(k), kBias);
     const ModelFit fit = fit_model({recording}, with_range_bias(with_noise(tails)));
     const double error = fit.effects[0].effect.coefficients[0] - kBias;
     sum.squares += error * error / recordings;
@@ -179,7 +179,7 @@ TEST(SlowStudentTails, EstimatesAreTwoThirdsAsUncertain) {
 }
 
 TEST(StudentTails, WhereTheyAreNotUsedAWarningSaysSo) {
-  const Recording recording = with_tails(72, 0.0);
+  const DrivenRecording recording = with_tails(72, 0.0);
   Model model = with_noise(kTails);
   EXPECT_TRUE(fit_model({recording}, model).warnings.empty());
   NoiseProcess turn;
@@ -197,7 +197,7 @@ TEST(StudentTails, WhereTheyAreNotUsedAWarningSaysSo) {
 
 // A gate is as wide for them as for normal errors that are as unlikely.
 TEST(StudentTails, AGateLeavesOutHardlyAny) {
-  const Recording recording = with_tails(75, 0.0);
+  const DrivenRecording recording = with_tails(75, 0.0);
   FitOptions options;
   options.gate = 16.0;
   const ModelFit normal = fit_model({recording}, with_noise(0.0), options);
@@ -209,7 +209,7 @@ TEST(StudentTails, AGateLeavesOutHardlyAny) {
 // An effect's columns are the same whether sightings have tails, and weigh by what these tell, or
 // count by their variance, as for the size of the noise.
 TEST(StudentTails, ColumnsBesideTheNoiseAreWhitenedByItsVariance) {
-  const Recording recording = with_tails(76, 0.05);
+  const DrivenRecording recording = with_tails(76, 0.05);
   const ModelFit fitted = fit_model({recording}, with_range_bias(with_noise(kTails)));
   const FitState& fit = *fitted.state;
   const auto columns_under = [&fit](const RecordingProblem& problem) {
@@ -227,7 +227,7 @@ TEST(StudentTails, ColumnsBesideTheNoiseAreWhitenedByItsVariance) {
 }
 
 TEST(StudentTails, TheirSizeIsEstimatedWithThem) {
-  const Recording recording = with_tails(76, 0.0);
+  const DrivenRecording recording = with_tails(76, 0.0);
   Model model = with_noise(kTails);
   for (NoiseProcess& one : model.noise.processes) one.sd *= 0.6;
   const FitWithNoise fit = fit_model_and_noise({recording}, model);

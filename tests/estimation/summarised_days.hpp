@@ -4,6 +4,7 @@
 // Days of one robot on one mesh, and their rows as summaries take them.
 #pragma once
 
+#include "driven.hpp"
 #include "estimation/common_errors.hpp"
 #include "estimation/recording_start.hpp"
 #include "estimation/simulated_recordings.hpp"
@@ -19,7 +20,7 @@
 namespace trussmap::testing {
 
 struct Days {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   Model model;
   bool effects = false;  ///< common errors are free
   bool lever = false;    ///< or where the sensor stands ahead of the axle
@@ -33,7 +34,8 @@ inline Days days_of(const WheeledRobot& robot, bool survey, int count, std::uint
     const std::uint64_t own = seed + static_cast<std::uint64_t>(k);
     std::mt19937_64 random = random_stream(own, Stream::walk);
     const Tours tours = make_tours(mesh, WalkKind::euler, 1, random);
-    days.recordings.push_back(simulate_drive(mesh, tours.walk, {}, robot, own).recording);
+    days.recordings.push_back(
+        testing::driven(simulate_drive(mesh, tours.walk, {}, robot, own).recording));
     days.recordings.back().name = "day " + std::to_string(k + 1);
     if (!survey) days.recordings.back().survey.clear();
   }
@@ -53,23 +55,24 @@ inline Days days_of(const Equipment& equipment, int count, bool effects, std::ui
   return days;
 }
 
-inline EffectPattern lever_of(const std::vector<Recording>& recordings) {
+inline EffectPattern lever_of(const std::vector<DrivenRecording>& recordings) {
   EffectPattern result;
   result.name = "lever";
   ViewPattern unit;
   unit.ahead = 1.0;
-  for (const Recording& one : recordings) {
+  for (const DrivenRecording& one : recordings) {
     result.sightings.emplace_back(one.sightings.size(), unit);
   }
   return result;
 }
 
-inline EffectParameters border_of(const std::vector<Recording>& recordings, const Days& days) {
+inline EffectParameters border_of(const std::vector<DrivenRecording>& recordings,
+                                  const Days& days) {
   if (days.lever) return {lever_of(recordings)};
   return days.effects ? common_error_columns(recordings, days.model.robot) : EffectParameters();
 }
 
-inline std::vector<KnownPlace> known_of(const Recording& recording, const Model& model) {
+inline std::vector<KnownPlace> known_of(const DrivenRecording& recording, const Model& model) {
   std::vector<KnownPlace> known;
   for (const SurveyPoint& one : recording.survey) {
     known.push_back(
@@ -79,9 +82,9 @@ inline std::vector<KnownPlace> known_of(const Recording& recording, const Model&
 }
 
 /// A day's rows, laid on the map that there is.
-inline SessionRows rows_of(const Recording& recording, const Days& days,
+inline SessionRows rows_of(const DrivenRecording& recording, const Days& days,
                            const SummarisedSessions& map) {
-  Recording laid = recording;
+  DrivenRecording laid = recording;
   if (map.sessions() > 0) {
     laid.survey.clear();
     for (std::size_t k = 0; k < map.landmarks().size(); ++k) {

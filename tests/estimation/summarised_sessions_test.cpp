@@ -30,7 +30,7 @@ using testing::rows_of;
 
 SummarisedSessions summarised(const Days& days, const SummaryOptions& options = {}) {
   SummarisedSessions map(options);
-  for (const Recording& one : days.recordings) {
+  for (const DrivenRecording& one : days.recordings) {
     map.add(rows_of(one, days, map), known_of(one, days.model));
   }
   return map;
@@ -180,7 +180,7 @@ TEST(SummarisedSessions, TurnAboutTheOnlyPlaceThatIsKnown) {
   Days days = days_of(robot, true, 3, 121);
   for (const std::string known : {"L0_2", "L2_0", "L2_2"}) {
     Days one = days;
-    for (Recording& recording : one.recordings) {
+    for (DrivenRecording& recording : one.recordings) {
       std::erase_if(recording.survey,
                     [&](const SurveyPoint& point) { return point.landmark != known; });
     }
@@ -206,7 +206,7 @@ TEST(SummarisedSessions, ThatCanTurnAreRefused) {
   map.add(rows_of(days.recordings[0], days, map));
   const std::vector<std::string> names = map.landmarks();
   for (const std::string& only : names) {
-    Recording hanging = days.recordings[1];
+    DrivenRecording hanging = days.recordings[1];
     for (Sighting& one : hanging.sightings) {
       if (one.landmark != only) one.landmark.insert(0, "other ");
     }
@@ -218,7 +218,7 @@ TEST(SummarisedSessions, ThatCanTurnAreRefused) {
           << error.what();
     }
     EXPECT_EQ(map.sessions(), 1);
-    Recording single = days.recordings[1];
+    DrivenRecording single = days.recordings[1];
     std::erase_if(single.sightings, [&](const Sighting& one) { return one.landmark != only; });
     if (single.sightings.size() < 2) continue;
     EXPECT_THROW(map.add(rows_of(single, days, map)), SolveError) << only;

@@ -80,8 +80,8 @@ TEST(Triangulation, StraightAtItTellsNoDistance) {
 }
 
 /// What a robot with a range sensor records, its ranges taken away; it stands on no landmark.
-Recording bearings_alone(std::uint64_t seed, bool compass) {
-  Recording recording =
+DrivenRecording bearings_alone(std::uint64_t seed, bool compass) {
+  DrivenRecording recording =
       testing::simulate_recording({.compass = compass, .range_sensor = true}, seed).recording;
   std::erase_if(recording.sightings, [](const Sighting& one) { return one.standing(); });
   for (Sighting& one : recording.sightings) one.range = kAbsent;
@@ -94,7 +94,7 @@ TEST(BearingsAlone, MakeAMap) {
   double chi2 = 0.0;
   double dof = 0.0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const Recording recording = bearings_alone(seed, seed % 2 == 0);
+    const DrivenRecording recording = bearings_alone(seed, seed % 2 == 0);
     const BuiltMap built = build_map({recording}, Model());
     ASSERT_TRUE(built.on_survey);
     EXPECT_EQ(built.legs, 0);
@@ -108,7 +108,7 @@ TEST(BearingsAlone, MakeAMap) {
 /// A camera that looks aside, seen by bearings alone; the landmarks are surveyed.
 TEST(BearingsAlone, ShowAnOffsetOfTheirOwn) {
   for (const std::uint64_t seed : {11U, 12U, 13U}) {
-    Recording recording = bearings_alone(seed, true);
+    DrivenRecording recording = bearings_alone(seed, true);
     for (Sighting& one : recording.sightings) one.bearing = wrap_angle(one.bearing + 0.05);
     Model model;
     model.effects = {catalogue_effect("bearing offset")};
@@ -124,7 +124,7 @@ TEST(BearingsAlone, GoWithOtherSightings) {
   double chi2 = 0.0;
   double dof = 0.0;
   for (std::uint64_t seed = 21; seed <= 26; ++seed) {
-    Recording recording = testing::simulate_recording({.range_sensor = true}, seed).recording;
+    DrivenRecording recording = testing::simulate_recording({.range_sensor = true}, seed).recording;
     for (std::size_t k = 0; k < recording.sightings.size(); k += 2) {
       if (!recording.sightings[k].standing()) recording.sightings[k].range = kAbsent;
     }

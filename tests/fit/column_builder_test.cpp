@@ -51,7 +51,7 @@ TEST(ColumnBuilder, AgreesWithTheBorderOfTheAdjustmentInEveryChannel) {
 }
 
 TEST(ColumnBuilder, SessionsOfTheirOwnAddUpToTheWhole) {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   for (const std::uint64_t seed : {5U, 6U}) {
     recordings.push_back(testing::simulate_recording({}, seed).recording);
   }

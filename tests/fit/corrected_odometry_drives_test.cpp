@@ -35,10 +35,10 @@ struct Sensors {
 };
 
 /// A noisy drive (seed 5) as with_wheels makes it, with readings that are missing now and then.
-Recording driven_with(const OtherDrive& drive, const Sensors& sensors) {
+DrivenRecording driven_with(const OtherDrive& drive, const Sensors& sensors) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
-  Recording recording = with_wheels(
+  DrivenRecording recording = with_wheels(
       testing::recorded(drive, testing::noisy(drive, drive.wheels, random)), drive.model.robot);
   double heading = 2.5;  // rad, so that readings wrap
   for (std::size_t row = 0; row < drive.rows.size(); ++row) {
@@ -52,7 +52,7 @@ Recording driven_with(const OtherDrive& drive, const Sensors& sensors) {
   return recording;
 }
 
-OdometryInputs inputs_of(const Drive& drive) {
+OdometryInputs inputs_of(const MotionRows& drive) {
   OdometryInputs inputs;
   inputs.compass = drive.has_compass();
   inputs.gyro = drive.has_gyro();
@@ -60,7 +60,7 @@ OdometryInputs inputs_of(const Drive& drive) {
   return inputs;
 }
 
-CorrectedRow drive_row(CorrectedOdometry& odometry, const Drive& drive, std::size_t row) {
+CorrectedRow drive_row(CorrectedOdometry& odometry, const MotionRows& drive, std::size_t row) {
   WheelRow now{drive.duration(row)};
   if (drive.has_compass()) now.compass = drive.heading[row];
   if (drive.has_gyro()) now.yaw_rate = drive.yaw_rate[row];
@@ -70,7 +70,8 @@ CorrectedRow drive_row(CorrectedOdometry& odometry, const Drive& drive, std::siz
   return odometry.drive(now, covariates);
 }
 
-void expect_the_same(const Recording& recording, const Model& model, const std::string& what) {
+void expect_the_same(const DrivenRecording& recording, const Model& model,
+                     const std::string& what) {
   CorrectedOdometry odometry(model, inputs_of(recording.drive));
   const std::vector<TimedPose> after = dead_reckoned_poses(recording, model);
   double place = 0.0;
@@ -113,7 +114,7 @@ TEST_P(CorrectedOdometryOfDrives, IsDeadReckoningByTheModelRowByRow) {
   const std::vector<Effect> effects = effects_on(drive.model.robot);
   EXPECT_GT(effects.size(), 10U);
   for (const Sensors& sensors : {Sensors{}, {true, false}, {false, true}, {true, true}}) {
-    const Recording recording = driven_with(drive, sensors);
+    const DrivenRecording recording = driven_with(drive, sensors);
     Model model = drive.model;
     model.noise.steer = 0.02;
     expect_the_same(recording, model, "no effect");
@@ -138,7 +139,7 @@ TEST_P(CorrectedOdometryOfDrives, EffectsThatAreKnownLeaveTheTruePath) {
   for (const testing::Twist& row : drive.rows) end = testing::after(end, row);
   for (const Channel channel : drive.constants) {
     const double g = channel == Channel::steer ? 0.2 : -0.02;
-    const Recording recording = with_wheels(
+    const DrivenRecording recording = with_wheels(
         testing::recorded(drive, testing::with_effect(drive, channel, g)), drive.model.robot);
     Model model = drive.model;
     model.effects = {own_effect(channel, "1", g)};

@@ -5,6 +5,7 @@
 #include "trussmap/corrected_odometry.hpp"
 
 #include "drive/causal_variables.hpp"
+#include "driven.hpp"
 #include "estimation/simulated_recordings.hpp"
 #include "fit/online_models.hpp"
 #include "shared_data.hpp"
@@ -28,20 +29,20 @@ using testing::own_effect;
 using testing::simulate_recording;
 using testing::with;
 
-Recording simulated(bool compass) {
+DrivenRecording simulated(bool compass) {
   Equipment equipment;
   equipment.compass = compass;
   return simulate_recording(equipment, 3).recording;
 }
 
-CorrectedOdometry odometry_for(const Drive& drive, const Model& model) {
+CorrectedOdometry odometry_for(const MotionRows& drive, const Model& model) {
   OdometryInputs inputs;
   inputs.compass = drive.has_compass();
   for (const Covariate& one : drive.covariates) inputs.covariates.push_back(one.name);
   return CorrectedOdometry(model, inputs);
 }
 
-CorrectedRow drive_row(CorrectedOdometry& odometry, const Drive& drive, std::size_t row) {
+CorrectedRow drive_row(CorrectedOdometry& odometry, const MotionRows& drive, std::size_t row) {
   std::vector<double> covariates;
   for (const Covariate& one : drive.covariates) covariates.push_back(one.values[row]);
   return odometry.drive({drive.duration(row), drive.left[row], drive.right[row],
@@ -49,7 +50,7 @@ CorrectedRow drive_row(CorrectedOdometry& odometry, const Drive& drive, std::siz
                         covariates);
 }
 
-std::vector<CorrectedRow> replayed(const Recording& recording, const Model& model) {
+std::vector<CorrectedRow> replayed(const DrivenRecording& recording, const Model& model) {
   CorrectedOdometry odometry = odometry_for(recording.drive, model);
   std::vector<CorrectedRow> rows;
   for (std::size_t row = 0; row < recording.drive.rows(); ++row) {
@@ -77,7 +78,8 @@ Difference difference(const std::vector<CorrectedRow>& rows, const std::vector<T
   return largest;
 }
 
-void expect_the_same(const Recording& recording, const Model& model, const std::string& what) {
+void expect_the_same(const DrivenRecording& recording, const Model& model,
+                     const std::string& what) {
   const Difference d =
       difference(replayed(recording, model), dead_reckoned_poses(recording, model));
   EXPECT_LT(d.place, 1e-10) << what;
@@ -107,7 +109,7 @@ TEST(CorrectedOdometry, IsDeadReckoningByTheModelRowByRow) {
       {"lever arm", {0.1}},
       {"range bias", {0.1}}};
   for (const bool compass : {false, true}) {
-    const Recording recording = simulated(compass);
+    const DrivenRecording recording = simulated(compass);
     std::vector<Effect> all;
     for (const auto& [name, coefficients] : effects) {
       all.push_back(catalogue_effect(name, coefficients));
@@ -125,7 +127,7 @@ TEST(CorrectedOdometry, IsDeadReckoningByTheModelRowByRow) {
 
 /// Before the first reading the pose does not know what the reading will leave of the heading.
 TEST(CorrectedOdometry, AgreesFromTheFirstReadingOn) {
-  Recording recording = simulated(true);
+  DrivenRecording recording = simulated(true);
   for (std::size_t row = 0; row < 50; ++row) recording.drive.heading[row] = kAbsent;
   for (std::size_t row = 51; row < 5000; row += 3) recording.drive.heading[row] = kAbsent;
   const Model model = with({catalogue_effect("wheelbase", {0.03})});
@@ -143,7 +145,7 @@ TEST(CorrectedOdometry, AgreesFromTheFirstReadingOn) {
 /// bends the first path by as much, the second by its square, and its cube is what the readings
 /// lack.
 TEST(CorrectedOdometry, SeesThePathAtItsBest) {
-  const Recording recording = simulated(true);
+  const DrivenRecording recording = simulated(true);
   double way = 0.0;
   for (std::size_t row = 0; row < recording.drive.rows(); ++row) {
     way += 0.5 * std::abs(recording.drive.left[row] + recording.drive.right[row]);
@@ -161,11 +163,11 @@ TEST(CorrectedOdometry, SeesThePathAtItsBest) {
 
 /// What the second up to now lacks to the second about now, at most: a loss in the direction of
 /// travel moves no heading, so that poses differ by no more than the sum of the rows' differences.
-void expect_late_only(const Recording& recording, const Robot& robot, Channel channel,
+void expect_late_only(const DrivenRecording& recording, const Robot& robot, Channel channel,
                       const char* shape, double a) {
   Model model = with({own_effect(channel, shape, a)});
   model.robot = robot;
-  const Drive& drive = recording.drive;
+  const MotionRows& drive = recording.drive;
   const RowVariables about = row_variables(drive, robot, {}, std::vector<Pose>(drive.rows()), 0);
   const std::vector<double>& whole = about.at(shape);
   CausalVariables variables;
@@ -192,7 +194,7 @@ void expect_late_only(const Recording& recording, const Robot& robot, Channel ch
 }
 
 TEST(CorrectedOdometry, RatesAreLateAndNothingElse) {
-  const Recording recording = simulated(false);
+  const DrivenRecording recording = simulated(false);
   expect_late_only(recording, {}, Channel::travel, "speed", -0.1);
   expect_late_only(recording, {}, Channel::advance, "arc_angle", -0.1);
 }
@@ -200,8 +202,10 @@ TEST(CorrectedOdometry, RatesAreLateAndNothingElse) {
 TEST(CorrectedOdometry, RatesOfARealRobotAreLateAndNothingElse) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");
   const MrclamRecording read = read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset6/Robot1"));
-  expect_late_only(read.recording, read.model.robot, Channel::travel, "speed", -0.1);
-  expect_late_only(read.recording, read.model.robot, Channel::advance, "arc_angle", -0.1);
+  expect_late_only(testing::driven(read.recording), read.model.robot, Channel::travel, "speed",
+                   -0.1);
+  expect_late_only(testing::driven(read.recording), read.model.robot, Channel::advance, "arc_angle",
+                   -0.1);
 }
 
 /// Two wheels have no steering that could be scaled.
@@ -220,7 +224,7 @@ TEST(CorrectedOdometry, RefusesEffectsOfAnotherDrive) {
 
 /// Without a compass rows make up the pose; each has the covariance of its own arc.
 TEST(CorrectedOdometry, RowsMakeUpThePose) {
-  const Recording recording = simulated(false);
+  const DrivenRecording recording = simulated(false);
   const Model model =
       with({catalogue_effect("wheelbase", {0.03}), catalogue_effect("constant creep", {0.02})});
   Pose pose;
@@ -237,7 +241,7 @@ TEST(CorrectedOdometry, RowsMakeUpThePose) {
 }
 
 TEST(CorrectedOdometry, EqualRowsGiveEqualResults) {
-  const Recording recording = simulated(true);
+  const DrivenRecording recording = simulated(true);
   const Model model = with(
       {catalogue_effect("slip with speed", {-0.02}), catalogue_effect("hard iron", {0.03, 0.01})});
   const std::vector<CorrectedRow> once = replayed(recording, model);
@@ -252,7 +256,7 @@ TEST(CorrectedOdometry, EqualRowsGiveEqualResults) {
 /// The pose begins anew, while time, distance and the place in the map go on.
 TEST(CorrectedOdometry, ResetCountsThePoseAnew) {
   for (const bool compass : {false, true}) {
-    const Recording recording = simulated(compass);
+    const DrivenRecording recording = simulated(compass);
     const Model model = with({catalogue_effect("tyre drift (distance)", {1e-4}),
                               catalogue_effect("slope", {0.02, 0.01}),
                               own_effect(Channel::travel, "0.001*x", 1.0)});

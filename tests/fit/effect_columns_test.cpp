@@ -100,7 +100,7 @@ class World {
   }
 
  private:
-  [[nodiscard]] const Drive& drive() const { return made_.recording.drive; }
+  [[nodiscard]] const MotionRows& drive() const { return made_.recording.drive; }
   static Pose pose_of(const TruePose& at) { return {at.place.real(), at.place.imag(), at.heading}; }
   [[nodiscard]] double time_of(int node) const {
     return problem_.poses[idx(node - problem_.landmark_count())].t;
@@ -235,7 +235,7 @@ class World {
 
   InvertedRecording made_;
   Model model_ = testing::inverted_model();
-  std::vector<Recording> recordings_;
+  std::vector<DrivenRecording> recordings_;
   std::vector<SessionPath> paths_;
   RecordingProblem problem_;
   RecordingState state_;
@@ -319,8 +319,8 @@ INSTANTIATE_TEST_SUITE_P(EffectColumns, EachChannel, ::testing::ValuesIn(all_cha
                          [](const auto& which) { return std::string(facts_of(which.param).name); });
 
 TEST(EffectColumns, PerSessionActsInThatSessionAlone) {
-  const std::vector<Recording> recordings = {invert({}, {1}, 4).recording,
-                                             invert({}, {1}, 5).recording};
+  const std::vector<DrivenRecording> recordings = {invert({}, {1}, 4).recording,
+                                                   invert({}, {1}, 5).recording};
   std::vector<SessionPath> paths(2);
   for (std::size_t s = 0; s < 2; ++s) paths[s].ends.resize(recordings[s].drive.rows());
   const ShapeContext context(recordings, Robot{kInvertedWheelbase}, paths);
@@ -352,7 +352,7 @@ TEST(EffectColumns, PerSessionActsInThatSessionAlone) {
 }
 
 TEST(EffectColumns, LargestIsThatOfTheShape) {
-  const std::vector<Recording> recordings = {invert({}, {1}, 6).recording};
+  const std::vector<DrivenRecording> recordings = {invert({}, {1}, 6).recording};
   std::vector<SessionPath> paths(1);
   paths[0].ends.resize(recordings[0].drive.rows());
   const ShapeContext context(recordings, Robot{kInvertedWheelbase}, paths);
@@ -368,7 +368,7 @@ TEST(EffectColumns, LargestIsThatOfTheShape) {
 }
 
 TEST(EffectColumns, RetimingMovesSightingsAndTruthBack) {
-  Recording recording = invert({}, {1}, 7).recording;
+  DrivenRecording recording = invert({}, {1}, 7).recording;
   const double end = recording.drive.t.back();
   recording.truth = {{0.05, 0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}, {end, 0.0, 0.0, 0.0}};
   Effect effect;
@@ -377,7 +377,7 @@ TEST(EffectColumns, RetimingMovesSightingsAndTruthBack) {
   effect.shape = {"1"};
   effect.coefficients = {0.25};
   const Robot robot{kInvertedWheelbase};
-  const Recording back = retimed({recording}, {effect}, robot)[0];
+  const DrivenRecording back = retimed({recording}, {effect}, robot)[0];
   ASSERT_EQ(back.truth.size(), 2U);  // the first would lie before the drive
   EXPECT_DOUBLE_EQ(back.truth[0].t, 0.75);
   EXPECT_DOUBLE_EQ(back.truth[1].t, end - 0.25);
@@ -385,7 +385,7 @@ TEST(EffectColumns, RetimingMovesSightingsAndTruthBack) {
   EXPECT_DOUBLE_EQ(back.sightings[0].t, recording.sightings[1].t - 0.25);
   effect.shape = {"payload_kg"};
   effect.coefficients = {0.01};
-  const Recording loaded = retimed({recording}, {effect}, robot)[0];
+  const DrivenRecording loaded = retimed({recording}, {effect}, robot)[0];
   EXPECT_EQ(loaded.sightings.size(), recording.sightings.size());  // unloaded at first
 }
 

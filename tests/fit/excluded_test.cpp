@@ -33,7 +33,7 @@ TimeSpan middle_of(const ModelFit& fit) {
 }
 
 /// Wheels that spun and a sighting of another landmark, in the middle of a span.
-Recording spoilt(Recording recording, const TimeSpan& span) {
+DrivenRecording spoilt(DrivenRecording recording, const TimeSpan& span) {
   const double middle = 0.5 * (span.from + span.to);
   for (std::size_t row = 0; row < recording.drive.rows(); ++row) {
     if (recording.drive.t[row] > middle && recording.drive.t[row] < middle + 1.0) {
@@ -60,7 +60,7 @@ TEST(ExcludedTimes, WhateverHappenedThereChangesNothing) {
   const SimulatedRecording one = simulate_recording({true, true, false}, 21);
   const ModelFit whole = fit_model({one.recording}, one.model);
   const TimeSpan span = middle_of(whole);
-  const Recording bad = spoilt(one.recording, span);
+  const DrivenRecording bad = spoilt(one.recording, span);
   ASSERT_LT(fit_model({bad}, one.model).p_value, 1e-6);  // it is bad indeed
   const ModelFit clean = fit_model({one.recording}, one.model, without(span));
   const ModelFit mended = fit_model({bad}, one.model, without(span));

@@ -61,7 +61,7 @@ TEST(FittedPath, IsTheTruePathOfANoiseFreeRecordingUnderItsEffect) {
 TEST(FittedPath, WhatIsMissingAtANodeIsNoiseOfTheWheelsThatAddsUpToIt) {
   const InvertedRecording simulated = invert({}, {1}, 42);
   const Model model = inverted_model();
-  const std::vector<Recording> recordings = {simulated.recording};
+  const std::vector<DrivenRecording> recordings = {simulated.recording};
   const FitState fit = fit_recordings(recordings, model);
   RecordingState state = fit.adjustment.state;
   // The end of a drive, and with it the next turn on the spot.
@@ -72,7 +72,7 @@ TEST(FittedPath, WhatIsMissingAtANodeIsNoiseOfTheWheelsThatAddsUpToIt) {
   }
   const SessionPath path =
       fitted_paths(recordings, model.robot, fit.problem, {}, Eigen::VectorXd(), state)[0];
-  const Drive& drive = recordings[0].drive;
+  const MotionRows& drive = recordings[0].drive;
   // Brute force: every row's record and what it lacks, one after the other.
   double most = 0.0;
   double farthest = 0.0;
@@ -99,7 +99,7 @@ TEST(FittedPath, WhatIsMissingAtANodeIsNoiseOfTheWheelsThatAddsUpToIt) {
 }
 
 TEST(FittedPath, PoseAtGoesAlongTheRow) {
-  Drive drive;
+  MotionRows drive;
   drive.t = {1.0, 2.0, 4.0};
   drive.left = drive.right = {1.0, 1.0, 2.0};
   SessionPath path;

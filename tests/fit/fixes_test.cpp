@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Positions without heading: drives that nothing else ties to a place, and drives with landmarks.
+#include "driven.hpp"
 #include "estimation/kinds/kinds.hpp"
 #include "fit/placed_drives.hpp"
 #include "fit/replicated_recording.hpp"
@@ -204,7 +205,7 @@ TEST(Fixes, ThatFollowTooFastArePassedOver) {
   PlacedDrive drive = placed_drive(options, 12);
   const double end = drive.recording.drive.t.back();
   drive.recording.fixes.push_back({end + 1.0, 0.0, 0.0});
-  const RecordingProblem problem = make_problem({drive.recording}, drive.model);
+  const RecordingProblem problem = make_problem({testing::driven(drive.recording)}, drive.model);
   const auto fixes = std::count_if(problem.measurements.begin(), problem.measurements.end(),
                                    [](const Measurement& one) { return one.kind == &kinds::fix; });
   EXPECT_NEAR(static_cast<double>(fixes), 10.0 * end, 3.0);
@@ -256,7 +257,8 @@ TEST(Fixes, AreReplicatedWithTheRest) {
   Model model = drive.model;
   model.effects = mounted(0.0, 0.0, 0.0);
   const ModelFit fit = fit_model({drive.recording}, model);
-  const std::vector<Recording> again = replicated({drive.recording}, *fit.state, 4);
+  const std::vector<DrivenRecording> again =
+      replicated({testing::driven(drive.recording)}, *fit.state, 4);
   const ModelFit second = fit_model(again, fit.model);
   EXPECT_LT(std::abs(second.chi2 - second.dof), 5.0 * std::sqrt(2.0 * second.dof));
   for (std::size_t e = 0; e < 3; ++e) {

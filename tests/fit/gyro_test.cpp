@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Robots with a gyro, from the simulator that turns the physics round.
+#include "driven.hpp"
 #include "estimation/recording_problem.hpp"
 #include "estimation/recording_system.hpp"
 #include "fit/effect_columns.hpp"
@@ -70,7 +71,7 @@ TEST_P(Exactly, WithoutNoiseAFitFindsTheEffectAndLeavesNothing) {
   World world;
   world.noise = kNoiseFree;
   const Effect effect = catalogue_effect(GetParam().name, GetParam().coefficients);
-  const Recording recording = simulated(world, {effect}, 4).recording;
+  const DrivenRecording recording = testing::driven(simulated(world, {effect}, 4).recording);
   const ModelFit fit = fit_model({recording}, model_with({GetParam().name}));
   EXPECT_LT(fit.chi2, 1e-6);
   ASSERT_TRUE(fit.effects.front().not_fitted.empty());
@@ -102,13 +103,13 @@ TEST(Gyro, ColumnsAreThoseOfOtherReadings) {
   World world;
   world.noise = kNoiseFree;
   const Model model;
-  const Recording exact = simulated(world, {}, 7).recording;
+  const DrivenRecording exact = testing::driven(simulated(world, {}, 7).recording);
   const auto taken = [&](double bias, double scale) {
-    Recording other = exact;
+    DrivenRecording other = exact;
     for (double& rate : other.drive.yaw_rate) rate = rate / (1.0 + scale) + bias;
     return with_gyro({other}, model.robot, model.noise);
   };
-  const auto residuals = [&](const std::vector<Recording>& recordings,
+  const auto residuals = [&](const std::vector<DrivenRecording>& recordings,
                              const RecordingState& state) {
     const RecordingProblem problem = make_problem(recordings, model);
     const EffectParameters none;
@@ -116,7 +117,7 @@ TEST(Gyro, ColumnsAreThoseOfOtherReadings) {
     system.linearise(state, Eigen::VectorXd());
     return system.residuals();
   };
-  const std::vector<Recording> recordings = taken(0.0, 0.0);
+  const std::vector<DrivenRecording> recordings = taken(0.0, 0.0);
   const FitState fit = fit_recordings(recordings, model);
   const ShapeContext context(recordings, model.robot, fit.paths);
   for (const Channel channel : {Channel::gyro, Channel::gyro_scale}) {
@@ -158,8 +159,8 @@ Statistics statistics(const World& world, int count, std::uint64_t first) {
   Model model = model_with(names);
   model.noise.gyro = world.noise.gyro;
   for (int k = 0; k < count; ++k) {
-    const Recording recording =
-        simulated(world, effects, first + static_cast<std::uint64_t>(k)).recording;
+    const DrivenRecording recording =
+        testing::driven(simulated(world, effects, first + static_cast<std::uint64_t>(k)).recording);
     const ModelFit fit = fit_model({recording}, model);
     const double ratio = fit.chi2 / fit.dof;
     result.chi2_per_dof += ratio / count;
@@ -213,7 +214,7 @@ TEST(Gyro, LeadsDeadReckoningBetterThanWheelsAlone) {
     const Pose& start = drive.motion.start;
     const Pose end = relative(start, drive.motion.rows.back().pose);
     const TimedPose reckoned = dead_reckoned_poses(drive.recording, model).back();
-    Recording wheels = drive.recording;
+    DrivenRecording wheels = testing::driven(drive.recording);
     wheels.drive.yaw_rate.clear();
     const TimedPose alone = dead_reckoned_poses(wheels, model).back();
     with += (reckoned.estimate.pose.position() - end.position()).squaredNorm();
@@ -229,12 +230,12 @@ TEST(Gyro, TheRobotReckonsAsOneDoesAfterwards) {
   world.noise.gyro = 0.0008;
   for (const bool compass : {false, true}) {
     world.compass = compass;
-    const Recording recording = simulated(world, {}, 12).recording;
+    const DrivenRecording recording = testing::driven(simulated(world, {}, 12).recording);
     Model model;
     model.effects = {catalogue_effect("gyro bias", {0.003}), catalogue_effect("gyro scale", {0.01}),
                      catalogue_effect("wheelbase", {-0.02})};
     const std::vector<TimedPose> after = dead_reckoned_poses(recording, model);
-    const Drive& drive = recording.drive;
+    const MotionRows& drive = recording.drive;
     OdometryInputs inputs;
     inputs.gyro = true;
     inputs.compass = compass;
@@ -271,7 +272,7 @@ TEST(Gyro, ABiasThatWalksIsAProcess) {
   double stated = 0.0;
   constexpr int kDrives = 8;  // seeds 60 to 67
   for (std::uint64_t seed = 60; seed < 60 + kDrives; ++seed) {
-    const Recording recording = simulated(world, {}, seed).recording;
+    const DrivenRecording recording = testing::driven(simulated(world, {}, seed).recording);
     const ModelFit a = fit_model({recording}, white);
     const ModelFit b = fit_model({recording}, walks);
     plain += a.chi2 / a.dof / kDrives;
@@ -289,13 +290,14 @@ TEST(Gyro, AMissingBiasIsNamed) {
   model.noise.gyro = 0.0005;
   for (const auto& [name, value] : {std::pair("gyro bias", 0.0008), std::pair("gyro scale", 0.008),
                                     std::pair("wheelbase", 0.015)}) {
-    const Recording recording = simulated(world, {catalogue_effect(name, {value})}, 21).recording;
+    const DrivenRecording recording =
+        testing::driven(simulated(world, {catalogue_effect(name, {value})}, 21).recording);
     EXPECT_EQ(diagnose({recording}, model).missing, name);
   }
 }
 
 /// Three tours without rests, with a compass.
-Recording toured(const std::vector<Effect>& effects, double walk, std::uint64_t seed) {
+DrivenRecording toured(const std::vector<Effect>& effects, double walk, std::uint64_t seed) {
   const Mesh mesh = mesh_of_lines({0.0, 5.5, 10.0, 15.5}, {0.0, 4.5, 10.0, 14.5});
   std::mt19937_64 random = random_stream(seed, Stream::walk);
   const Tours tours = make_tours(mesh, WalkKind::euler, 3, random);
@@ -303,7 +305,7 @@ Recording toured(const std::vector<Effect>& effects, double walk, std::uint64_t 
   robot.gyro = true;
   robot.noise.gyro = 0.0005;
   robot.noise.gyro_walk = walk;
-  return simulate_drive(mesh, tours.walk, {}, robot, seed, {effects}).recording;
+  return testing::driven(simulate_drive(mesh, tours.walk, {}, robot, seed, {effects}).recording);
 }
 
 /// How often what is missing first acts on the channel gyro, or is this effect.
@@ -345,8 +347,8 @@ TEST(Gyro, AHeadingThatWasIntegratedIsNoCompass) {
   world.noise.gyro = 0.003;
   world.tours = 2;
   for (const std::uint64_t seed : {31U, 32U, 33U}) {
-    Recording recording = simulated(world, {}, seed).recording;
-    Drive& drive = recording.drive;
+    DrivenRecording recording = testing::driven(simulated(world, {}, seed).recording);
+    MotionRows& drive = recording.drive;
     double heading = 0.0;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       heading += drive.yaw_rate[row] * drive.duration(row);
@@ -357,7 +359,7 @@ TEST(Gyro, AHeadingThatWasIntegratedIsNoCompass) {
     EXPECT_NE(words.find("integrated from a gyro"), std::string::npos) << words;
     // One that reads north is a compass.
     world.compass = true;
-    Recording other = simulated(world, {}, seed).recording;
+    DrivenRecording other = testing::driven(simulated(world, {}, seed).recording);
     other.drive.yaw_rate.clear();
     EXPECT_EQ(in_words(fit_model_and_noise({other}, Model()).noise).find("gyro"),
               std::string::npos);

@@ -21,12 +21,12 @@ double swing_at(double t) {
 
 /// A robot that goes round in a circle of 3 m, some 0.5 m/s, and sees four landmarks ten times a
 /// second, with errors that forget themselves within `memory` (s; 0: at once).
-Recording circling(double memory, std::uint64_t seed) {
+DrivenRecording circling(double memory, std::uint64_t seed) {
   constexpr double kRow = 0.1;
   constexpr double kBase = 0.3;
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
-  Recording recording;
+  DrivenRecording recording;
   const std::vector<Vector2> landmarks{{6.0, 0.0}, {0.0, 6.0}, {-6.0, 0.0}, {0.0, -6.0}};
   std::vector<Vector2> error(landmarks.size());
   for (Vector2& one : error) one = {normal(random), normal(random)};
@@ -65,7 +65,7 @@ Model model_of_circling() {
 
 TEST(LastingErrors, AreFoundAsLongAsTheyLast) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    const Recording recording = circling(1.5, seed);
+    const DrivenRecording recording = circling(1.5, seed);
     ASSERT_TRUE(has_dense_frames({recording}));
     const LastingErrors found = lasting_errors(fit_model({recording}, model_of_circling()));
     // exp(-t/1.5) passes 0.3 at 1.8 s; the fit takes some of it for motion.
@@ -81,8 +81,8 @@ TEST(LastingErrors, OfIndependentErrorsThereAreNone) {
 }
 
 TEST(LastingErrors, ThinnedFramesAreWholeAndSoFarApart) {
-  const Recording recording = circling(0.0, 4);
-  const std::vector<Recording> thinned = thinned_frames({recording}, 2.0);
+  const DrivenRecording recording = circling(0.0, 4);
+  const std::vector<DrivenRecording> thinned = thinned_frames({recording}, 2.0);
   ASSERT_EQ(thinned.size(), 1U);
   EXPECT_EQ(thinned.front().drive.rows(), recording.drive.rows());
   const std::vector<Sighting>& left = thinned.front().sightings;
@@ -99,7 +99,7 @@ TEST(LastingErrors, ThinnedFramesAreWholeAndSoFarApart) {
 
 /// A delay moves the first frames out of the drive; the last, which are nonsense, stay left out.
 TEST(FitWithADelay, KeepsWhatIsLeftOutApartWhereSightingsLeaveTheDrive) {
-  Recording recording = circling(0.0, 5);
+  DrivenRecording recording = circling(0.0, 5);
   for (Sighting& one : recording.sightings) one.t += 0.35;
   std::erase_if(recording.sightings,
                 [&recording](const Sighting& one) { return one.t > recording.drive.t.back(); });

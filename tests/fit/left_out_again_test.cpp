@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 // Sightings left out under a noise that is stated too small, once the noise is known.
+#include "driven.hpp"
 #include "fit/fit_state.hpp"
 #include "trussmap/simulation.hpp"
 
@@ -19,23 +20,23 @@ FitOptions gated() {
 }
 
 /// Wheels and compass are twice as noisy as the model says; one landmark is misread once.
-Recording noisy_recording(std::uint64_t seed) {
+DrivenRecording noisy_recording(std::uint64_t seed) {
   const Mesh mesh = mesh_of_lines({0.0, 4.0, 9.0, 12.0}, {0.0, 3.0, 7.0, 12.0});
   std::mt19937_64 random = random_stream(seed, Stream::walk);
   WheeledRobot robot;
   robot.rough = parse_rough("half");
   DrivingStyle style;
   style.standing = 0.002;
-  Recording recording =
+  DrivenRecording recording = testing::driven(
       simulate_drive(mesh, make_tours(mesh, WalkKind::euler, 5, random).walk, style, robot, seed)
-          .recording;
+          .recording);
   Sighting& wrong = recording.sightings[recording.sightings.size() / 2];
   wrong.landmark = landmark_name(mesh, wrong.landmark == landmark_name(mesh, 3) ? 12 : 3);
   return recording;
 }
 
 TEST(LeftOut, ComesBackUnderTheNoiseThatThereIsButForWhatIsWrong) {
-  const std::vector<Recording> recordings{noisy_recording(2)};
+  const std::vector<DrivenRecording> recordings{noisy_recording(2)};
   Model believed;
   believed.noise.sighting = 0.002;
   const ModelFit stated = fit_model(recordings, believed, gated());

@@ -4,6 +4,7 @@
 // Models fitted to recordings that were made backwards (inverted_recordings.hpp), and to the
 // practice recordings of another program.
 #include "criticism/disturbances.hpp"
+#include "driven.hpp"
 #include "fit/fit_state.hpp"
 #include "shared_data.hpp"
 #include "trussmap/catalogue.hpp"
@@ -156,7 +157,7 @@ TEST(ModelFit, WithoutFittingCoefficientsStayAndExplainTheData) {
 }
 
 TEST(ModelFit, PerSessionEachRecordingHasItsOwnCoefficient) {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   for (const double offset : {0.04, -0.07, 0.0}) {
     Disturbance disturbance;
     disturbance.compass = [offset](double, double) { return offset; };
@@ -306,7 +307,7 @@ TEST_P(PracticeRecording, TheAnswerFitsWithItsCoefficients) {
   Model model = read_model(folder / "model.toml");
   model.effects = one.effects;
   for (Effect& effect : model.effects) effect.coefficients.clear();
-  const FitState fit = fit_recordings({read_recording(folder)}, model);
+  const FitState fit = fit_recordings({testing::driven(read_recording(folder))}, model);
   EXPECT_GT(fit.adjustment.p_value, 0.01);
   EXPECT_LT(fit.adjustment.p_value, 0.99);
   RecordProperty("chi2_over_dof", std::to_string(fit.adjustment.chi2 / fit.adjustment.dof));
@@ -352,7 +353,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ModelFit, AClockThatWasSetOnLeavesAFit) {
   TRUSSMAP_NEEDS_SHARED("data/reports");
   const std::filesystem::path folder = testing::shared("data/reports/time-in-ntp");
-  const FitState fit = fit_recordings({read_recording(folder)}, read_model(folder / "model.toml"));
+  const FitState fit =
+      fit_recordings({testing::driven(read_recording(folder))}, read_model(folder / "model.toml"));
   EXPECT_EQ(landmark_places(fit).size(), 9U);
   EXPECT_TRUE(std::isfinite(fit.adjustment.chi2));
 }

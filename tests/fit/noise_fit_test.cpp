@@ -3,6 +3,7 @@
 // Estimated noise against what the simulator made, and the budget against closed forms.
 #include "trussmap/noise_fit.hpp"
 
+#include "driven.hpp"
 #include "estimation/simulated_recordings.hpp"
 #include "trussmap/diagnose.hpp"
 
@@ -21,7 +22,7 @@ namespace {
 
 /// Tours whose noise is not what the model states; the nominal model goes with it.
 struct RoughRecording {
-  Recording recording;
+  DrivenRecording recording;
   TrueMotion motion;
   Model model;
 };
@@ -33,7 +34,7 @@ RoughRecording rough_recording(const std::string& kinds, std::uint64_t seed) {
   WheeledRobot robot;
   if (!kinds.empty()) robot.rough = parse_rough(kinds);
   SimulatedDrive drive = simulate_drive(mesh, tours.walk, {}, robot, seed);
-  return {std::move(drive.recording), std::move(drive.motion), {}};
+  return {testing::driven(drive.recording), std::move(drive.motion), {}};
 }
 
 FittedNoise noise_of(const RoughRecording& rough) {
@@ -146,8 +147,8 @@ TEST(FitNoise, KeepsADiagnosisHonest) {
 
 // ----------------------------------------
 
-Recording straight_drive(double seconds, double speed) {
-  Recording recording;
+DrivenRecording straight_drive(double seconds, double speed) {
+  DrivenRecording recording;
   recording.name = "straight";
   constexpr double kRow = 0.1;
   const auto rows = static_cast<std::size_t>(std::lround(seconds / kRow));
@@ -169,7 +170,7 @@ const NoiseBudget& only(const std::vector<NoiseBudget>& budgets) {
 TEST(NoiseBudgets, AgreeWithTheStraightInClosedForm) {
   Model model;
   model.noise = {};
-  const Recording drive = straight_drive(40.0, 0.5);
+  const DrivenRecording drive = straight_drive(40.0, 0.5);
   const NoiseBudget budget = only(noise_budget({drive}, model, {10.0}));
   const double d = 5.0;
   const double k = 0.003;
@@ -212,7 +213,7 @@ TEST(NoiseBudgets, OfLegsAndOfWhatIsTheirOwn) {
   Model model;
   model.noise.left = model.noise.right = 0.0;
   model.noise.processes = {{Channel::travel, ProcessKind::per_leg, 0.01, 0.0, 0.0, 0}};
-  Recording drive = straight_drive(40.0, 0.5);
+  DrivenRecording drive = straight_drive(40.0, 0.5);
   for (const double t : {0.0, 10.0, 20.0, 30.0, 40.0}) drive.sightings.push_back({t, "A"});
   const std::vector<NoiseBudget> budgets = noise_budget({drive}, model, {0.0, 40.0});
   ASSERT_EQ(budgets.size(), 2U);

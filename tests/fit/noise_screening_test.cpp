@@ -14,7 +14,7 @@
 namespace trussmap::noise_screening_test {
 namespace {
 
-std::vector<ScreenedNoise> screened(const Recording& recording, const Model& model) {
+std::vector<ScreenedNoise> screened(const DrivenRecording& recording, const Model& model) {
   const FitState fit = fit_recordings({recording}, model);
   NoiseReml reml(fit, model.noise);
   const std::vector<NoiseComponent> white = white_components(fit, model.noise);
@@ -49,7 +49,7 @@ TEST(NoiseScreening, WhatIsThereStandsOut) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
   double error = 0.0;
-  Drive& drive = world.recording.drive;
+  MotionRows& drive = world.recording.drive;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const double keep = std::exp(-drive.duration(row) / 2.0);
     error = keep * error + 0.06 * std::sqrt(1.0 - keep * keep) * normal(random);

@@ -33,7 +33,7 @@ using testing::with_effect;
 constexpr DriveKind kDrives[] = {DriveKind::skid_steer, DriveKind::tricycle, DriveKind::ackermann,
                                  DriveKind::omni3,      DriveKind::mecanum,  DriveKind::wheels};
 
-Recording driven_by(const OtherDrive& drive, const testing::Wheels& wheels) {
+DrivenRecording driven_by(const OtherDrive& drive, const testing::Wheels& wheels) {
   return with_wheels(recorded(drive, wheels), drive.model.robot);
 }
 
@@ -45,7 +45,7 @@ TEST_P(OtherDrives, NoiseFreeEffectsAreFoundAndLeaveNothing) {
   for (const Channel channel : drive.constants) {
     Model model = drive.model;
     const double g = channel == Channel::steer ? 0.03 : -0.02;
-    const Recording recording = driven_by(drive, with_effect(drive, channel, g));
+    const DrivenRecording recording = driven_by(drive, with_effect(drive, channel, g));
     EXPECT_GT(fit_model({recording}, model).chi2, 20.0) << name_of(channel);
     model.effects.push_back({"hidden", channel, {"1"}, {}, false});
     const ModelFit fit = fit_model({recording}, model);
@@ -75,7 +75,7 @@ TEST(Steering, IsTakenInExactlyHoweverFarOff) {
     Model model = drive.model;
     model.effects = {{"offset", Channel::steer, {"1"}, {}, false},
                      {"gain", Channel::steer_gain, {"1"}, {}, false}};
-    const Recording recording = driven_by(drive, misread(drive.wheels, 0.2, 0.3));
+    const DrivenRecording recording = driven_by(drive, misread(drive.wheels, 0.2, 0.3));
     const ModelFit fit = fit_model({recording}, model);
     EXPECT_LT(fit.chi2, 1e-6) << name_of(kind);
     EXPECT_NEAR(fit.model.effects[0].coefficients[0], 0.2, 1e-6) << name_of(kind);
@@ -93,9 +93,10 @@ TEST(Steering, LeavesShapesAsTheyWereRead) {
   const OtherDrive drive = other_drive(DriveKind::tricycle);
   Model model = drive.model;
   model.effects = {{"offset", Channel::steer, {"1"}, {0.2}, false}};
-  const Recording recording = driven_by(drive, drive.wheels);
-  const std::vector<Recording> steered_ones = steered({recording}, model.effects, model.robot, {});
-  const Drive& turned = steered_ones.front().drive;
+  const DrivenRecording recording = driven_by(drive, drive.wheels);
+  const std::vector<DrivenRecording> steered_ones =
+      steered({recording}, model.effects, model.robot, {});
+  const MotionRows& turned = steered_ones.front().drive;
   ASSERT_NE(turned.left, recording.drive.left);
   const std::vector<Pose> path(turned.rows());
   const RowVariables before = row_variables(recording.drive, model.robot, Pose(), path, 0);
@@ -115,7 +116,7 @@ TEST(OtherDrivesColumns, AreThoseOfDifferences) {
     const OtherDrive drive = other_drive(kind);
     const Robot& robot = drive.model.robot;
     const Recording raw = recorded(drive, drive.wheels);
-    const Drive here = with_wheels(raw, robot).drive;
+    const MotionRows here = with_wheels(raw, robot).drive;
     std::vector<Channel> channels;
     for (const ChannelFacts& one : trussmap::channels()) {
       const bool steers = one.channel == Channel::steer || one.channel == Channel::steer_gain;
@@ -131,7 +132,7 @@ TEST(OtherDrivesColumns, AreThoseOfDifferences) {
         for (double& one : other.drive.covariates[k].values) {
           one = channel == Channel::steer ? one + g : one * (1.0 + g);
         }
-        const Drive moved = with_wheels(other, robot).drive;
+        const MotionRows moved = with_wheels(other, robot).drive;
         const SegmentMotion motion = segment_motion(segment_rows(moved, 5.0, 17.3, robot));
         const Pose& d = motion.displacement;
         return Eigen::Vector3d(d.x, d.y, d.heading);
@@ -162,7 +163,7 @@ TEST_P(OtherDrives, DeadReckoningScattersAsItsCovarianceSays) {
   for (const Twist& row : drive.rows) end = after(end, row);
   double sum = 0.0;
   for (int k = 0; k < kTimes; ++k) {
-    const Recording recording = driven_by(drive, noisy(drive, drive.wheels, random));
+    const DrivenRecording recording = driven_by(drive, noisy(drive, drive.wheels, random));
     const PoseEstimate found =
         dead_reckoned_estimates(recording.drive, drive.model.robot, noise).back();
     const Eigen::Vector3d error(found.pose.x - end.x, found.pose.y - end.y,
@@ -184,7 +185,7 @@ TEST_P(OtherDrives, FitsHaveTheChiSquareOfTheirDegreesOfFreedom) {
   double chi2 = 0.0;
   double dof = 0.0;
   for (int k = 0; k < kTimes; ++k) {
-    Recording recording = driven_by(drive, noisy(drive, drive.wheels, random));
+    DrivenRecording recording = driven_by(drive, noisy(drive, drive.wheels, random));
     for (TruthRow& row : recording.truth) {
       row.x += noise.truth * normal(random);
       row.y += noise.truth * normal(random);
@@ -205,7 +206,7 @@ TEST(OtherDrivesCalibration, FindsEachDrivesConstants) {
     model.noise.left = model.noise.right = 0.002;
     model.noise.steer = 0.002;
     const Channel channel = drive.steers ? Channel::steer : Channel::wheel2;
-    const Recording recording =
+    const DrivenRecording recording =
         driven_by(drive, noisy(drive, with_effect(drive, channel, 0.02), random));
     const WheelCalibration found = calibrate_wheels({recording}, model);
     EXPECT_FALSE(found.diameter_ratio || found.wheelbase_ratio || found.scale);
@@ -222,7 +223,7 @@ TEST(OtherDrivesCalibration, FindsEachDrivesConstants) {
 TEST(OtherDrivesCalibration, FindsASteeringThatIsGeared) {
   const OtherDrive drive = other_drive(DriveKind::tricycle);
   std::mt19937_64 random(31);
-  const Recording recording =
+  const DrivenRecording recording =
       driven_by(drive, misread(noisy(drive, drive.wheels, random), -0.06, 4.7));
   const WheelCalibration found = calibrate_wheels({recording}, drive.model);
   EXPECT_TRUE(found.settled);
@@ -254,17 +255,17 @@ TEST(OtherDrivesCalibration, WheelsThatRollInOtherDirectionsAreReckonedAway) {
     return shown;
   };
   const auto tracked = [&wheels](const OtherDrive& one) {
-    Recording recording = driven_by(one, wheels);
+    DrivenRecording recording = driven_by(one, wheels);
     for (TruthRow& row : recording.truth) {
       const Pose point = compose({row.x, row.y, row.heading}, {0.03, -0.02, 0.01});
       row = {row.t, point.x, point.y, wrap_angle(point.heading)};
     }
     return recording;
   };
-  const Recording seen = tracked(drive);
+  const DrivenRecording seen = tracked(drive);
   OtherDrive other = drive;
   for (Twist& row : other.rows) row = {0.5 * row.s, row.f, -1.3 * row.a};
-  const Recording unseen = tracked(other);
+  const DrivenRecording unseen = tracked(other);
   const WheelCalibration found = calibrate_wheels({seen}, drive.model);
   EXPECT_TRUE(found.undetermined.empty());
   const double nominal = drive_errors({unseen}, drive.model).front().end;

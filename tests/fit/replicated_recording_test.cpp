@@ -3,6 +3,7 @@
 // Recordings drawn anew, against the fit that they come from.
 #include "fit/replicated_recording.hpp"
 
+#include "driven.hpp"
 #include "estimation/simulated_recordings.hpp"
 #include "fit/noise_reml.hpp"
 #include "trussmap/catalogue.hpp"
@@ -18,7 +19,7 @@ namespace trussmap::replicated_recording_test {
 namespace {
 
 struct Fitted {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   FitState state;
 };
 
@@ -39,20 +40,21 @@ Fitted fitted(std::uint64_t seed, const Noise& noise = {}) {
                     known("range bias", 0.1)};
   DrivingStyle style;
   style.rest_share = 0.3;
-  Recording recording = simulate_drive(mesh, make_tours(mesh, WalkKind::euler, 2, random).walk,
-                                       style, robot, seed, acting)
-                            .recording;
+  DrivenRecording recording =
+      testing::driven(simulate_drive(mesh, make_tours(mesh, WalkKind::euler, 2, random).walk, style,
+                                     robot, seed, acting)
+                          .recording);
   Model model;
   model.noise = noise;
   model.effects = acting.effects;
   for (Effect& one : model.effects) one.coefficients.clear();
-  std::vector<Recording> recordings{std::move(recording)};
+  std::vector<DrivenRecording> recordings{std::move(recording)};
   FitState state = fit_recordings(recordings, model);
   return {std::move(recordings), std::move(state)};
 }
 
 /// Under the same model, coefficients free.
-FitState again(const std::vector<Recording>& recordings, const FitState& fit) {
+FitState again(const std::vector<DrivenRecording>& recordings, const FitState& fit) {
   Model model = fit.model;
   for (Effect& one : model.effects) one.coefficients.clear();
   return fit_recordings(recordings, model);
@@ -62,7 +64,7 @@ TEST(ReplicatedRecording, WithoutNoiseTheFitIsExact) {
   Fitted world = fitted(1);
   const Noise stated = world.state.model.noise;
   world.state.model.noise = silent_noise();
-  const std::vector<Recording> drawn = replicated(world.recordings, world.state, 1);
+  const std::vector<DrivenRecording> drawn = replicated(world.recordings, world.state, 1);
   world.state.model.noise = stated;
   const FitState fit = again(drawn, world.state);
   EXPECT_LT(fit.adjustment.chi2, 1e-4);

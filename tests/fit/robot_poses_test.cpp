@@ -35,7 +35,7 @@ TEST(DeadReckonedPoses, AreTheRowsOneAfterTheOther) {
   model.effects = {catalogue_effect("wheelbase", {0.03}),
                    catalogue_effect("travel scale", {-0.02})};
   const std::vector<TimedPose> poses = dead_reckoned_poses(world.recording, model);
-  const Drive& drive = world.recording.drive;
+  const MotionRows& drive = world.recording.drive;
   ASSERT_EQ(poses.size(), drive.rows() + 1);
   EXPECT_EQ(poses.front().t, drive.start());
   EXPECT_EQ(poses.front().estimate.covariance, Matrix3(Matrix3::Zero()));
@@ -57,7 +57,7 @@ TEST(DeadReckonedPoses, AreTheRowsOneAfterTheOther) {
 /// 200 robots that go astray as the model says are as far off as their covariances say.
 TEST(DeadReckonedPoses, CovariancesAreThoseOfTheModelsNoise) {
   const SimulatedRecording world = simulated(false, 4);
-  Recording recording = world.recording;
+  DrivenRecording recording = world.recording;
   recording.drive.t.resize(400);
   recording.drive.left.resize(400);
   recording.drive.right.resize(400);
@@ -70,7 +70,7 @@ TEST(DeadReckonedPoses, CovariancesAreThoseOfTheModelsNoise) {
   const int runs = 400;
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();
   for (int run = 0; run < runs; ++run) {
-    Recording astray = recording;
+    DrivenRecording astray = recording;
     for (std::size_t row = 0; row < astray.drive.rows(); ++row) {
       double& left = astray.drive.left[row];
       double& wheel = astray.drive.right[row];

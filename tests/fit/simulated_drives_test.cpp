@@ -51,7 +51,7 @@ std::vector<Case> cases() {
 }
 
 struct World {
-  Recording recording;
+  DrivenRecording recording;
   Model model;
 };
 

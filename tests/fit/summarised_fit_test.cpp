@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "driven.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/fit_model.hpp"
@@ -24,17 +25,17 @@ struct Robot3x3 {
 };
 
 /// Tours of a mesh of 3 x 3, 5 m apart; a wheelbase 2 % larger than believed.
-std::vector<Recording> days_of(const Robot3x3& what, int count, std::uint64_t seed) {
+std::vector<DrivenRecording> days_of(const Robot3x3& what, int count, std::uint64_t seed) {
   const Mesh mesh = even_mesh({3, 3}, 5.0);
   WheeledRobot robot;
   robot.compass = what.compass;
   robot.gyro = what.gyro;
-  std::vector<Recording> days;
+  std::vector<DrivenRecording> days;
   for (int day = 0; day < count; ++day) {
     const std::uint64_t own = seed + static_cast<std::uint64_t>(day);
     std::mt19937_64 random = random_stream(own, Stream::walk);
     const Tours tours = make_tours(mesh, WalkKind::euler, 1, random);
-    days.push_back(simulate_drive(mesh, tours.walk, {}, robot, own).recording);
+    days.push_back(testing::driven(simulate_drive(mesh, tours.walk, {}, robot, own).recording));
     days.back().name = "day " + std::to_string(day + 1);
     if (!what.survey) days.back().survey.clear();
   }
@@ -47,9 +48,9 @@ Model model_of(const std::vector<std::string>& effects) {
   return model;
 }
 
-SummarisedFit summarised(const std::vector<Recording>& days, const Model& model) {
+SummarisedFit summarised(const std::vector<DrivenRecording>& days, const Model& model) {
   SummarisedFit fit(model);
-  for (const Recording& day : days) fit.add(day);
+  for (const DrivenRecording& day : days) fit.add(day);
   return fit;
 }
 
@@ -64,7 +65,7 @@ Matrix2 turn_onto(const std::vector<FittedLandmark>& map, const std::vector<Fitt
   return rotation(std::atan2(across, along));
 }
 
-std::string refusal(SummarisedFit& fit, const Recording& recording) {
+std::string refusal(SummarisedFit& fit, const DrivenRecording& recording) {
   try {
     fit.add(recording);
   } catch (const SolveError& error) {
@@ -79,7 +80,7 @@ TEST(SummarisedFit, IsTheFitOfAllDaysAtOnce) {
        {Robot3x3{true, true, false}, Robot3x3{true, false, false}, Robot3x3{false, true, false},
         Robot3x3{true, true, true}, Robot3x3{false, false, false}}) {
     SCOPED_TRACE(::testing::Message() << what.compass << what.survey << what.gyro);
-    const std::vector<Recording> days = days_of(what, 4, 11);
+    const std::vector<DrivenRecording> days = days_of(what, 4, 11);
     const Model model = model_of(what.survey ? std::vector<std::string>{"wheelbase", "wheel scale"}
                                              : std::vector<std::string>{"wheelbase"});
     SummarisedFit fit = summarised(days, model);
@@ -114,16 +115,16 @@ TEST(SummarisedFit, IsTheFitOfAllDaysAtOnce) {
 
 /// A label that is misread is left out on its day, and for good.
 TEST(SummarisedFit, LeavesOutWhatContradictsTheMap) {
-  std::vector<Recording> days = days_of({}, 4, 21);
+  std::vector<DrivenRecording> days = days_of({}, 4, 21);
   const Model model;
-  const std::vector<Recording> right = days;
+  const std::vector<DrivenRecording> right = days;
   const auto read = std::ranges::find(days[2].sightings, std::string("L2_2"), &Sighting::landmark);
   ASSERT_NE(read, days[2].sightings.end());
   read->landmark = "L0_0";
   SummarisedFitOptions how;
   how.fit.gate = 16.0;
   SummarisedFit fit(model, how);
-  for (const Recording& day : days) fit.add(day);
+  for (const DrivenRecording& day : days) fit.add(day);
   const SummarisedFit clean = summarised(right, model);
   std::map<std::string, Vector2> places;
   for (const FittedLandmark& one : clean.landmarks()) places[one.name] = one.position;
@@ -138,13 +139,13 @@ TEST(SummarisedFit, LeavesOutWhatContradictsTheMap) {
 }
 
 TEST(SummarisedFit, EffectsThatAreHeldActAndStay) {
-  const std::vector<Recording> days = days_of({true, true, false}, 3, 31);
+  const std::vector<DrivenRecording> days = days_of({true, true, false}, 3, 31);
   Model model;
   model.effects.push_back(catalogue_effect("wheelbase", {0.01}));
   SummarisedFitOptions how;
   how.fit.fit_effects = false;
   SummarisedFit fit(model, how);
-  for (const Recording& day : days) fit.add(day);
+  for (const DrivenRecording& day : days) fit.add(day);
   EXPECT_EQ(fit.model().effects[0].coefficients, std::vector<double>{0.01});
   EXPECT_EQ(fit.effects()[0].sd, std::vector<double>{0.0});
   const ModelFit all = fit_model(days, model, how.fit);
@@ -182,21 +183,21 @@ TEST(SummarisedFit, OfNoSessionIsEmpty) {
 }
 
 TEST(SummarisedFit, ASessionWithoutSightingsOrRowsIsRefused) {
-  const std::vector<Recording> days = days_of({}, 2, 61);
+  const std::vector<DrivenRecording> days = days_of({}, 2, 61);
   for (const bool first : {true, false}) {
     SummarisedFit fit{Model{}};
     if (!first) fit.add(days[0]);
-    Recording blind = days[1];
+    DrivenRecording blind = days[1];
     blind.sightings.clear();
     EXPECT_THROW(fit.add(blind), InputError);
-    EXPECT_THROW(fit.add(Recording{}), std::invalid_argument);
+    EXPECT_THROW(fit.add(DrivenRecording{}), std::invalid_argument);
     EXPECT_EQ(fit.sessions(), first ? 0 : 1);
   }
 }
 
 /// Rooms that a survey alone ties together.
 TEST(SummarisedFit, ASessionElsewhereIsTiedByItsSurvey) {
-  std::vector<Recording> days = days_of({false, true, false}, 2, 71);
+  std::vector<DrivenRecording> days = days_of({false, true, false}, 2, 71);
   for (Sighting& one : days[1].sightings) one.landmark.insert(0, "B");
   for (SurveyPoint& one : days[1].survey) {
     one.landmark.insert(0, "B");
@@ -218,22 +219,22 @@ TEST(SummarisedFit, ASessionElsewhereIsTiedByItsSurvey) {
 /// What is held in place of a direction or position would contradict what measures it: what a
 /// survey lists and no session has sighted lays no frame.
 TEST(SummarisedFit, AFrameThatComesLaterIsRefused) {
-  const auto keep = [](Recording& day, const std::vector<std::string>& names) {
+  const auto keep = [](DrivenRecording& day, const std::vector<std::string>& names) {
     std::erase_if(day.survey, [&](const SurveyPoint& one) {
       return std::ranges::find(names, one.landmark) == names.end();
     });
   };
-  std::vector<Recording> days = days_of({false, true, false}, 3, 81);
-  const auto unsight = [](Recording& day, const std::string& name) {
+  std::vector<DrivenRecording> days = days_of({false, true, false}, 3, 81);
+  const auto unsight = [](DrivenRecording& day, const std::string& name) {
     std::erase_if(day.sightings, [&](const Sighting& one) { return one.landmark == name; });
   };
   {  // of two surveyed landmarks one is sighted: a compass, or the other, would turn the map
-    Recording first = days[0];
+    DrivenRecording first = days[0];
     keep(first, {"L1_1", "L2_2"});
     unsight(first, "L2_2");
-    Recording same = days[1];
+    DrivenRecording same = days[1];
     same.survey = first.survey;
-    Recording compass = days_of({true, false, false}, 1, 82).front();
+    DrivenRecording compass = days_of({true, false, false}, 1, 82).front();
     SummarisedFit fit{Model{}};
     fit.add(first);
     EXPECT_NE(refusal(fit, same).find("expected such a session first"), std::string::npos);
@@ -243,17 +244,17 @@ TEST(SummarisedFit, AFrameThatComesLaterIsRefused) {
     EXPECT_LT(fit.exact_error(), 1e-8);
   }
   {  // none is
-    Recording first = days[0];
+    DrivenRecording first = days[0];
     keep(first, {"L2_2"});
     unsight(first, "L2_2");
-    Recording sights = days[1];
+    DrivenRecording sights = days[1];
     sights.survey.clear();
     SummarisedFit fit{Model{}};
     fit.add(first);
     EXPECT_NE(refusal(fit, sights).find("expected such a session first"), std::string::npos);
   }
   {  // a fix a day
-    for (Recording& day : days) {
+    for (DrivenRecording& day : days) {
       day.survey.clear();
       day.fixes = {{day.sightings[3].t, 1.0, 2.0}};
     }
@@ -267,19 +268,19 @@ TEST(SummarisedFit, AFrameThatComesLaterIsRefused) {
 }
 
 TEST(SummarisedFit, ASessionThatDoesNotJoinIsRefusedAndTheMapStays) {
-  const std::vector<Recording> days = days_of({false, false, false}, 3, 41);
+  const std::vector<DrivenRecording> days = days_of({false, false, false}, 3, 41);
   SummarisedFit fit{Model{}};
   fit.add(days[0]);
   fit.add(days[1]);
   const double chi2 = fit.chi2();
-  Recording apart = days[2];
+  DrivenRecording apart = days[2];
   for (Sighting& one : apart.sightings) one.landmark = "other " + one.landmark;
   EXPECT_EQ(refusal(fit, apart), "day 3 stands apart: no landmark ties it to the sessions before");
-  const Recording compass = days_of({true, false, false}, 1, 42).front();
+  const DrivenRecording compass = days_of({true, false, false}, 1, 42).front();
   EXPECT_NE(refusal(fit, compass).find("expected such a session first"), std::string::npos);
-  const Recording surveyed = days_of({false, true, false}, 1, 43).front();
+  const DrivenRecording surveyed = days_of({false, true, false}, 1, 43).front();
   EXPECT_NE(refusal(fit, surveyed).find("a survey, truth or fixes"), std::string::npos);
-  Recording broken = days[2];
+  DrivenRecording broken = days[2];
   broken.drive.left[3] = std::nan("");
   EXPECT_THROW(fit.add(broken), std::invalid_argument);
   EXPECT_EQ(fit.sessions(), 2);
@@ -289,7 +290,7 @@ TEST(SummarisedFit, ASessionThatDoesNotJoinIsRefusedAndTheMapStays) {
 }
 
 TEST(SummarisedFit, TheFirstSessionHasToShowEveryCoefficient) {
-  const std::vector<Recording> days = days_of({true, false, false}, 1, 51);
+  const std::vector<DrivenRecording> days = days_of({true, false, false}, 1, 51);
   Model model;
   model.effects.push_back({"scale", Channel::travel, {Shape("1")}, {}});
   SummarisedFit fit(model);  // no survey: no scale

@@ -5,6 +5,7 @@
 #include "trussmap/fleet.hpp"
 
 #include "criticism/score_test.hpp"
+#include "driven.hpp"
 #include "fit/fit_state.hpp"
 #include "statistics/random_effects.hpp"
 #include "trussmap/catalogue.hpp"
@@ -21,7 +22,7 @@ namespace trussmap::fleet_test {
 namespace {
 
 /// A surveyed 3x3 mesh with landmark names of its own.
-Recording recording_of(std::uint64_t seed, const std::vector<Effect>& effects) {
+DrivenRecording recording_of(std::uint64_t seed, const std::vector<Effect>& effects) {
   const Mesh mesh = even_mesh({3, 3}, 3.0);
   std::mt19937_64 random = random_stream(seed, Stream::walk);
   const Tours tours = make_tours(mesh, WalkKind::euler, 2, random);
@@ -29,11 +30,11 @@ Recording recording_of(std::uint64_t seed, const std::vector<Effect>& effects) {
   const std::string own = "s" + std::to_string(seed) + "_";
   for (Sighting& one : drive.recording.sightings) one.landmark = own + one.landmark;
   for (SurveyPoint& one : drive.recording.survey) one.landmark = own + one.landmark;
-  return drive.recording;
+  return testing::driven(drive.recording);
 }
 
 struct Robots {
-  std::vector<Recording> recordings;
+  std::vector<DrivenRecording> recordings;
   std::vector<FleetRow> rows;
 };
 

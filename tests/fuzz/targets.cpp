@@ -93,7 +93,7 @@ void fuzz_recording(std::string_view bytes) {
   write_parts(bytes,
               {"drive.csv", "sightings.csv", "survey.csv", "truth.csv", "fixes.csv", "loops.csv"});
   may_refuse([] {
-    Recording recording = read_recording(folder().path());
+    const Recording recording = read_recording(folder().path());
     Model model;
     if (recording.drive.left.empty()) {
       // Its columns are the wheels of whatever drive has so many.
@@ -104,7 +104,6 @@ void fuzz_recording(std::string_view bytes) {
         model.robot.columns.push_back(one.name);
       }
       if (model.robot.columns.size() < 2 || model.robot.columns.size() > 3) return;
-      recording = with_wheels(std::move(recording), model.robot);
     }
     for (const CheckFinding& one : check_recordings({recording}, &model, "model.toml")) {
       if (in_words(one).find('\n') != std::string::npos) throw std::logic_error("two lines");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // A recording that became a bag becomes the same recording again by the map that comes with it.
+#include "driven.hpp"
 #include "estimation/simulated_recordings.hpp"
 #include "scratch_folder.hpp"
 #include "trussmap/error.hpp"
@@ -42,7 +43,7 @@ void expect_near_or_absent(double a, double b, double within) {
 
 /// What a bag holds of both. Angles of wheels are differences of sums, ranges alone single
 /// precision.
-void expect_same(const Recording& a, const Recording& b) {
+void expect_same(const DrivenRecording& a, const DrivenRecording& b) {
   EXPECT_EQ(a.drive.t, b.drive.t);
   expect_same_columns(a.drive.left, b.drive.left, 1e-12, "left");
   expect_same_columns(a.drive.right, b.drive.right, 1e-12, "right");
@@ -91,8 +92,8 @@ TEST(BagRoundTrip, ASimulatedDriveIsTheSame) {
   testing::Equipment equipment;
   equipment.range_sensor = true;
   const testing::SimulatedRecording world = testing::simulate_recording(equipment, 1);
-  const LogRecording back = there_and_back(world.recording, world.model);
-  expect_same(world.recording, back.recording);
+  const LogRecording back = there_and_back(world.read, world.model);
+  expect_same(world.recording, testing::driven(back.recording));
   EXPECT_EQ(back.model.robot.wheelbase, world.model.robot.wheelbase);
   EXPECT_EQ(back.model.noise, world.model.noise);
   ASSERT_EQ(back.recording.drive.covariates.size(), world.recording.drive.covariates.size());
@@ -135,8 +136,9 @@ Model tricycle_model() {
 
 TEST(BagRoundTrip, ATricycleIsTheSame) {
   const Model model = tricycle_model();
-  const Recording there = with_wheels(tricycle(), model.robot);
-  const Recording back = with_wheels(there_and_back(there, model).recording, model.robot);
+  const DrivenRecording there = with_wheels(tricycle(), model.robot);
+  const DrivenRecording back =
+      with_wheels(there_and_back(tricycle(), model).recording, model.robot);
   expect_same(there, back);
   ASSERT_EQ(back.drive.wheels.size(), 2U);
   expect_same_columns(there.drive.wheels[0].reading, back.drive.wheels[0].reading, 1e-12, "wheel");

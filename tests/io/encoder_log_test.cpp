@@ -102,7 +102,7 @@ TEST(EncoderLogData, TheGuessesOffByFactorsAreCalibrated) {
   const std::string below = "data/tricycle-calibration/dataset.txt.xz";
   TRUSSMAP_NEEDS_SHARED(below);
   const EncoderLogRecording read = read_encoder_log(testing::shared(below));
-  const Recording recording = with_wheels(read.recording, read.model.robot);
+  const DrivenRecording recording = with_wheels(read.recording, read.model.robot);
   const WheelCalibration found = calibrate_wheels({recording}, read.model);
   EXPECT_TRUE(found.settled);
   std::map<Channel, double> g;

@@ -29,7 +29,7 @@ const std::string kGraph =
 TEST(GraphRecording, ReckonsAsItsEdgesSay) {
   const ScratchFolder scratch;
   const GraphRecording read = read_graph_recording(scratch.write("a.g2o", kGraph));
-  const Recording recording = with_wheels(read.recording, read.model.robot);
+  const DrivenRecording recording = with_wheels(read.recording, read.model.robot);
   const std::vector<Pose> path =
       dead_reckoned_path(recording.drive, read.model.robot, read.model.noise);
   ASSERT_EQ(path.size(), 2U);

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "driven.hpp"
 #include "scratch_folder.hpp"
 #include "shared_data.hpp"
 #include "trussmap/error.hpp"
@@ -67,7 +68,8 @@ TEST(SlowLineRobot, WheelsClockAndRangesAreFound) {
   TRUSSMAP_NEEDS_SHARED("data/utias-1d-wheel/dataset1.csv.xz");
   const LineRecording read =
       read_line_robot(testing::shared("data/utias-1d-wheel/dataset1.csv.xz"));
-  const std::vector<Recording> recordings = thinned_frames({read.recording}, 1.0);
+  const std::vector<DrivenRecording> recordings =
+      thinned_frames({testing::driven(read.recording)}, 1.0);
   Model model = read.model;
   const ModelFit before = fit_model(recordings, model);
   model.effects = {{"travel", Channel::travel, {"1"}, {}, false},

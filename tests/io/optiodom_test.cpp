@@ -103,8 +103,9 @@ TEST(OptiOdom, OtherDrivesBecomeColumnsThatTheModelNames) {
 }
 
 /// All runs of a robot's sets, ready for its drive.
-std::vector<Recording> runs_of(const std::string& robot, const std::vector<std::string>& sets) {
-  std::vector<Recording> runs;
+std::vector<DrivenRecording> runs_of(const std::string& robot,
+                                     const std::vector<std::string>& sets) {
+  std::vector<DrivenRecording> runs;
   for (const std::string& set : sets) {
     const std::string name = set.substr(set.find('/') + 1);
     for (const char* const run : {"_run-01.csv", "_run-02.csv", "_run-03.csv", "_run-04.csv"}) {
@@ -122,9 +123,9 @@ std::vector<Recording> runs_of(const std::string& robot, const std::vector<std::
 /// Calibrated by circles, the steered robot's squares and free paths end where they should.
 TEST(OptiOdom, ATricyclesOtherPathsEndThreeTimesNearer) {
   TRUSSMAP_NEEDS_SHARED("data/optiodom/tricyc");
-  const std::vector<Recording> circles =
+  const std::vector<DrivenRecording> circles =
       runs_of("tricyc", {"circular/140120211415", "circular/140120211440"});
-  const std::vector<Recording> others =
+  const std::vector<DrivenRecording> others =
       runs_of("tricyc", {"free/140120211508", "square/140120211430", "square/140120211446"});
   ASSERT_EQ(circles.size(), 4U);
   ASSERT_EQ(others.size(), 5U);
@@ -144,8 +145,8 @@ TEST(OptiOdom, ATricyclesOtherPathsEndThreeTimesNearer) {
 /// Calibrated by four circles, the run by joystick ends three times nearer to where it should.
 TEST(OptiOdom, TheOmnidirectionalRobotsOtherPathEndsThreeTimesNearer) {
   TRUSSMAP_NEEDS_SHARED("data/optiodom/omni3");
-  const std::vector<Recording> circles = runs_of("omni3", {"circular/221220201643"});
-  const std::vector<Recording> others = runs_of("omni3", {"joystick/211220201842"});
+  const std::vector<DrivenRecording> circles = runs_of("omni3", {"circular/221220201643"});
+  const std::vector<DrivenRecording> others = runs_of("omni3", {"joystick/211220201842"});
   ASSERT_EQ(circles.size(), 4U);
   ASSERT_EQ(others.size(), 1U);
   const auto file =

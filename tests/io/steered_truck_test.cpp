@@ -185,7 +185,7 @@ TEST(SteeredTruck, NoDamageIsMoreThanAnError) {
 TEST(SlowSteeredTruck, VictoriaParkFollowsItsGps) {
   TRUSSMAP_NEEDS_SHARED("data/victoria-park/aa3_dr.mat");
   const TruckRecording read = read_steered_truck(testing::shared("data/victoria-park/aa3"));
-  Recording recording = with_wheels(read.recording, read.model.robot);
+  DrivenRecording recording = with_wheels(read.recording, read.model.robot);
   recording.sightings.clear();
   Model model = read.model;
   for (const Channel channel : {Channel::steer, Channel::steer_gain, Channel::wheels,
@@ -219,7 +219,7 @@ TEST(SlowSteeredTruck, VictoriaParksTreesTellTheSteeringAsItsGpsDoes) {
   const TruckRecording read = read_steered_truck(testing::shared("data/victoria-park/aa3"));
   EXPECT_EQ(read.graph_poses, 6969);
   ASSERT_EQ(read.recording.sightings.size(), 3640U);
-  Recording recording = with_wheels(read.recording, read.model.robot);
+  DrivenRecording recording = with_wheels(read.recording, read.model.robot);
   recording.fixes.clear();
   Model model = read.model;
   for (const Channel channel :

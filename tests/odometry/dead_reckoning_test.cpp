@@ -17,10 +17,10 @@ namespace trussmap::dead_reckoning_test {
 namespace {
 
 /// Spin, straight, arc, reverse: 20 rows of 0.1 s each, wheel noise added if asked (seed 5).
-Drive varied_drive(double noise_k) {
+MotionRows varied_drive(double noise_k) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
-  Drive drive;
+  MotionRows drive;
   const WheelTravel kinds[] = {{-0.02, 0.02}, {0.1, 0.1}, {0.08, 0.12}, {-0.05, -0.06}};
   for (const WheelTravel& kind : kinds) {
     for (int k = 0; k < 20; ++k) {
@@ -35,12 +35,13 @@ Drive varied_drive(double noise_k) {
 
 const Robot kRobot{0.34};
 
-PoseEstimate reckon(const Drive& drive, double from, double to, const PoseEstimate& start = {}) {
+PoseEstimate reckon(const MotionRows& drive, double from, double to,
+                    const PoseEstimate& start = {}) {
   return dead_reckon(start, drive, from, to, kRobot, Noise{});
 }
 
 TEST(DeadReckoning, AnyCutComposesToTheWhole) {
-  const Drive drive = varied_drive(0.0);
+  const MotionRows drive = varied_drive(0.0);
   const PoseEstimate whole = reckon(drive, 0.0, 8.0);
   for (const double cut : {0.05, 1.0, 2.34, 3.999, 7.95}) {
     const PoseEstimate parts = reckon(drive, cut, 8.0, reckon(drive, 0.0, cut));
@@ -52,7 +53,7 @@ TEST(DeadReckoning, AnyCutComposesToTheWhole) {
 }
 
 TEST(DeadReckoning, EachKindOfMotionIsOneArc) {
-  const Drive drive = varied_drive(0.0);
+  const MotionRows drive = varied_drive(0.0);
   const auto arcs = merge_rows(drive, rows_between(drive, 0.0, 8.0), 0.34, {0.003, 0.003});
   ASSERT_EQ(arcs.size(), 4U);
   EXPECT_NEAR(arcs[2].travel.right, 2.4, 1e-12);
@@ -61,7 +62,7 @@ TEST(DeadReckoning, EachKindOfMotionIsOneArc) {
 
 /// Merging replaces the rows' noisy path by an arc: the covariance changes by the noise's share.
 TEST(DeadReckoning, MergedCovarianceIsThatOfTheRows) {
-  const Drive drive = varied_drive(0.003);
+  const MotionRows drive = varied_drive(0.003);
   Motion rows;
   for (const DriveRow& row : rows_between(drive, 0.0, 8.0)) {
     rows = then(rows, arc_motion(travel_of(drive, row), 0.34, {0.003, 0.003}));
@@ -77,11 +78,11 @@ TEST(DeadReckoning, MergedCovarianceIsThatOfTheRows) {
 TEST(DeadReckoning, TheCompassFilterIsAsSureAsItShouldBe) {
   std::mt19937_64 random(6);
   std::normal_distribution<double> normal;
-  const Drive truth = varied_drive(0.0);
+  const MotionRows truth = varied_drive(0.0);
   const Noise noise;
   double sum = 0.0;
   for (int run = 0; run < 400; ++run) {
-    Drive drive = truth;
+    MotionRows drive = truth;
     Pose pose;
     PoseEstimate start;
     start.covariance(2, 2) = 0.1 * 0.1;

@@ -4,6 +4,7 @@
 // Maps from recordings of a robot with known faults, built with and without the model of them.
 #include "odometry/effect_correction.hpp"
 
+#include "driven.hpp"
 #include "shared_data.hpp"
 #include "simulation/wheeled_robot.hpp"
 #include "trussmap/build_map.hpp"
@@ -19,19 +20,20 @@
 namespace trussmap::effect_correction_test {
 namespace {
 
-Recording drive_about(bool compass) {
+DrivenRecording drive_about(bool compass) {
   const Mesh mesh = even_mesh({4, 4}, 5.0);
   auto random = random_stream(3, Stream::walk);
   const Tours tours = make_tours(mesh, WalkKind::euler, 2, random);
   WheeledRobot robot;
   robot.compass = compass;
-  Recording recording = simulate_drive(mesh, tours.walk, {}, robot, 3).recording;
+  DrivenRecording recording =
+      testing::driven(simulate_drive(mesh, tours.walk, {}, robot, 3).recording);
   recording.survey = survey(mesh, 1e-6, 3);
   return recording;
 }
 
 /// Of dead reckoning: a map has the commonest faults estimated beside it.
-double error_of(const std::vector<Recording>& recordings) {
+double error_of(const std::vector<DrivenRecording>& recordings) {
   const BuiltMap built = build_map(recordings, Model{});
   return survey_rms(built.dead_reckoned, recordings.front().survey, {});
 }
@@ -39,8 +41,8 @@ double error_of(const std::vector<Recording>& recordings) {
 /// A wheelbase 3 % larger than believed, a right wheel 0.3 % larger: what the wheels show is less
 /// of both.
 TEST(EffectCorrection, RestoresTheRecordOfTheSoundRobot) {
-  const Recording sound = drive_about(false);
-  Recording faulty = sound;
+  const DrivenRecording sound = drive_about(false);
+  DrivenRecording faulty = sound;
   for (std::size_t row = 0; row < faulty.drive.rows(); ++row) {
     const double middle = 0.5 * (sound.drive.left[row] + sound.drive.right[row]);
     const double half = 0.5 * (sound.drive.right[row] - sound.drive.left[row]) * 1.03;
@@ -50,7 +52,7 @@ TEST(EffectCorrection, RestoresTheRecordOfTheSoundRobot) {
   Model model;
   model.effects.push_back(catalogue_effect("wheel diameter ratio", {0.003}));
   model.effects.push_back(catalogue_effect("wheelbase", {1.0 / 1.03 - 1.0}));
-  const std::vector<Recording> corrected = without_effects({faulty}, model);
+  const std::vector<DrivenRecording> corrected = without_effects({faulty}, model);
   for (std::size_t row = 0; row < sound.drive.rows(); ++row) {
     EXPECT_NEAR(corrected[0].drive.left[row], sound.drive.left[row], 1e-12);
     EXPECT_NEAR(corrected[0].drive.right[row], sound.drive.right[row], 1e-12);
@@ -62,7 +64,8 @@ TEST(EffectCorrection, RestoresTheRecordOfTheSoundRobot) {
 /// is better than without.
 TEST(EffectCorrection, TheAnswerOfAPracticeRecordingImprovesItsReckoning) {
   TRUSSMAP_NEEDS_SHARED("data/hidden/b");
-  const Recording recording = read_recording(testing::shared("data/hidden/b"));
+  const DrivenRecording recording =
+      testing::driven(read_recording(testing::shared("data/hidden/b")));
   Model model;
   model.effects.push_back(catalogue_effect("hard iron", {0.0305937, -0.0257687}));
   EXPECT_LT(error_of(without_effects({recording}, model)), 0.7 * error_of({recording}));

@@ -23,8 +23,8 @@ struct Stretch {
 };
 
 /// Rows of uneven length in time, the first two 0.1 s each.
-Drive drive_of(const std::vector<Stretch>& training_segments) {
-  Drive drive;
+MotionRows drive_of(const std::vector<Stretch>& training_segments) {
+  MotionRows drive;
   double t = 0.0;
   for (const Stretch& stretch : training_segments) {
     for (int k = 0; k < stretch.rows; ++k) {
@@ -37,11 +37,11 @@ Drive drive_of(const std::vector<Stretch>& training_segments) {
   return drive;
 }
 
-std::vector<DriveArc> arcs_of(const Drive& drive) {
+std::vector<DriveArc> arcs_of(const MotionRows& drive) {
   return merge_rows(drive, rows_between(drive, 0.0, drive.t.back()), kWheelbase, kNoise);
 }
 
-Motion row_by_row(const Drive& drive, const std::vector<DriveRow>& rows) {
+Motion row_by_row(const MotionRows& drive, const std::vector<DriveRow>& rows) {
   Motion motion;
   for (const DriveRow& row : rows) {
     motion = then(motion, arc_motion(travel_of(drive, row), kWheelbase, kNoise));
@@ -58,7 +58,7 @@ Motion arc_by_arc(const std::vector<DriveArc>& arcs) {
 }
 
 TEST(RowsBetween, PartsOfARowAddUpToIt) {
-  const Drive drive = drive_of({{30, {0.03, 0.05}}});
+  const MotionRows drive = drive_of({{30, {0.03, 0.05}}});
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> time(0.0, drive.t.back());
   const auto sum_of = [&drive](double from, double to) {
@@ -86,7 +86,7 @@ TEST(RowsBetween, PartsOfARowAddUpToIt) {
 }
 
 TEST(RowsBetween, HoldARowsEndOnce) {
-  const Drive drive = drive_of({{10, {0.1, 0.1}}});
+  const MotionRows drive = drive_of({{10, {0.1, 0.1}}});
   for (const double cut : {0.05, drive.t[3], 0.5 * (drive.t[3] + drive.t[4]), drive.t[8]}) {
     std::vector<int> ends(drive.rows(), 0);
     for (const auto& rows :
@@ -98,7 +98,7 @@ TEST(RowsBetween, HoldARowsEndOnce) {
 }
 
 TEST(RowsBetween, AreCutToTheDrive) {
-  const Drive drive = drive_of({{10, {0.1, 0.1}}});
+  const MotionRows drive = drive_of({{10, {0.1, 0.1}}});
   const double last = drive.t.back();
   EXPECT_EQ(rows_between(drive, -5.0, 99.0).size(), drive.rows());
   EXPECT_NEAR(rows_between(drive, -5.0, 99.0).front().part, 1.0, 1e-14);
@@ -113,7 +113,7 @@ TEST(RowsBetween, AreCutToTheDrive) {
 }
 
 TEST(RowsBetween, AnyCutLeadsToTheSameEnd) {
-  const Drive drive = drive_of({{12, {0.03, 0.05}}, {6, {-0.02, 0.02}}, {9, {-0.05, -0.04}}});
+  const MotionRows drive = drive_of({{12, {0.03, 0.05}}, {6, {-0.02, 0.02}}, {9, {-0.05, -0.04}}});
   const Motion whole = row_by_row(drive, rows_between(drive, 0.0, drive.t.back()));
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> time(0.0, drive.t.back());
@@ -128,13 +128,13 @@ TEST(RowsBetween, AnyCutLeadsToTheSameEnd) {
 }
 
 TEST(MergeRows, KindsOfMotionStayApart) {
-  const Drive drive = drive_of({{5, {0.0, 0.0}},
-                                {5, {-0.02, 0.02}},
-                                {5, {0.02, -0.02}},
-                                {5, {0.1, 0.1}},
-                                {5, {-0.1, -0.1}},
-                                {5, {0.1, 0.1}},
-                                {5, {0.05, 0.1}}});
+  const MotionRows drive = drive_of({{5, {0.0, 0.0}},
+                                     {5, {-0.02, 0.02}},
+                                     {5, {0.02, -0.02}},
+                                     {5, {0.1, 0.1}},
+                                     {5, {-0.1, -0.1}},
+                                     {5, {0.1, 0.1}},
+                                     {5, {0.05, 0.1}}});
   const std::vector<DriveArc> arcs = arcs_of(drive);
   ASSERT_EQ(arcs.size(), 7U);
   const double lefts[] = {0.0, -0.1, 0.1, 0.5, -0.5, 0.5, 0.25};
@@ -144,7 +144,7 @@ TEST(MergeRows, KindsOfMotionStayApart) {
 TEST(MergeRows, LoseNeitherTravelNorTime) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
-  Drive drive = drive_of({{200, {0.0, 0.0}}});
+  MotionRows drive = drive_of({{200, {0.0, 0.0}}});
   WheelTravel sum;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     sum.left += drive.left[row] = 0.05 * normal(random);
@@ -165,7 +165,7 @@ TEST(MergeRows, OfConstantCurvatureGiveTheCovarianceOfTheRows) {
   for (const WheelTravel& travel :
        {WheelTravel{0.1, 0.1}, WheelTravel{0.03, 0.05}, WheelTravel{0.0, 0.05},
         WheelTravel{-0.04, -0.02}, WheelTravel{-0.03, 0.03}, WheelTravel{0.01, 0.1}}) {
-    const Drive drive = drive_of({{60, travel}});
+    const MotionRows drive = drive_of({{60, travel}});
     const std::vector<DriveArc> arcs = arcs_of(drive);
     ASSERT_EQ(arcs.size(), 1U) << travel.left << ", " << travel.right;
     const Motion rows = row_by_row(drive, rows_between(drive, 0.0, drive.t.back()));
@@ -179,7 +179,7 @@ TEST(MergeRows, OfConstantCurvatureGiveTheCovarianceOfTheRows) {
 TEST(MergeRows, OfANoisyDriveGiveNearlyTheCovarianceOfTheRows) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
-  Drive drive = drive_of(
+  MotionRows drive = drive_of(
       {{40, {-0.02, 0.02}}, {400, {0.05, 0.05}}, {30, {0.02, -0.02}}, {300, {0.05, 0.05}}});
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const double bend = 1.0 + 0.04 * std::sin(0.02 * static_cast<double>(row));

@@ -64,8 +64,8 @@ TEST(WheelsAndGyro, AreTakenTogetherAsLeastSquaresHasIt) {
   }
 }
 
-Drive a_drive() {
-  Drive drive;
+MotionRows a_drive() {
+  MotionRows drive;
   drive.t = {0.1, 0.2, 0.3};
   drive.left = {0.05, 0.0, -0.02};
   drive.right = {0.06, 0.0, 0.03};
@@ -74,7 +74,7 @@ Drive a_drive() {
 }
 
 TEST(WheelsAndGyro, ARobotWhoseWheelsStandStillStandsWhateverTheGyroSays) {
-  const Drive drive = with_gyro(a_drive(), Robot{0.3}, noise_of(0.003, 0.003, 0.001));
+  const MotionRows drive = with_gyro(a_drive(), Robot{0.3}, noise_of(0.003, 0.003, 0.001));
   EXPECT_EQ(drive.left[1], 0.0);
   EXPECT_EQ(drive.right[1], 0.0);
   EXPECT_NEAR(drive.gyro[1].excess, 0.001, 1e-15);
@@ -85,7 +85,7 @@ TEST(WheelsAndGyro, ARobotWhoseWheelsStandStillStandsWhateverTheGyroSays) {
 TEST(WheelsAndGyro, ARowWithoutAReadingIsTheWheelsAlone) {
   const Noise noise = noise_of(0.003, 0.003, 0.001);
   const Robot robot{0.3};
-  const Drive drive = with_gyro(a_drive(), robot, noise);
+  const MotionRows drive = with_gyro(a_drive(), robot, noise);
   EXPECT_EQ(drive.left[2], -0.02);
   EXPECT_EQ(drive.right[2], 0.03);
   EXPECT_TRUE(std::isinf(excess_variance(drive, 2, 1.0, 0.1, robot, noise)));
@@ -95,11 +95,11 @@ TEST(WheelsAndGyro, ARowWithoutAReadingIsTheWheelsAlone) {
 
 TEST(WheelsAndGyro, AreTakenTogetherOnce) {
   const Noise noise = noise_of(0.003, 0.003, 0.001);
-  const Drive once = with_gyro(a_drive(), Robot{0.3}, noise);
-  const Drive twice = with_gyro(once, Robot{0.3}, noise);
+  const MotionRows once = with_gyro(a_drive(), Robot{0.3}, noise);
+  const MotionRows twice = with_gyro(once, Robot{0.3}, noise);
   EXPECT_EQ(once.left, twice.left);
   EXPECT_EQ(once.wheel_left(0), 0.05);
-  Drive without = a_drive();
+  MotionRows without = a_drive();
   without.yaw_rate.clear();
   EXPECT_EQ(with_gyro(without, Robot{0.3}, noise).left, without.left);
   EXPECT_TRUE(with_gyro(without, Robot{0.3}, noise).gyro.empty());

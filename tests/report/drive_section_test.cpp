@@ -31,7 +31,7 @@ std::vector<std::string> titles_of(const Page& page) {
 
 TEST(DrivePage, ShowsOtherWheelsThanTwoBeforeTheTables) {
   const OtherDrive drive = other_drive(DriveKind::ackermann);
-  const Recording recording = with_wheels(recorded(drive, drive.wheels), drive.model.robot);
+  const DrivenRecording recording = with_wheels(recorded(drive, drive.wheels), drive.model.robot);
   const Page page = with_drive(some_page(), drive.model.robot, {recording});
   EXPECT_EQ(titles_of(page), (std::vector<std::string>{"Legs", "The robot's drive", "Tables"}));
   EXPECT_EQ(charts_of(page.content()).size(), 2U);  // wheels, steering

@@ -4,6 +4,7 @@
 // Effects of the catalogue in simulated recordings, undone by the definitions of the channels: a
 // slow integration of a few lines, which shares nothing with the simulator or the adjustment.
 #include "drive/row_variables.hpp"
+#include "driven.hpp"
 #include "effects/channel_physics.hpp"
 #include "geometry/index.hpp"
 #include "simulation/tours.hpp"
@@ -118,8 +119,8 @@ std::vector<double> gains(const World& world) {
   const TrueMotion& motion = world.drive.motion;
   std::vector<Pose> path;
   for (const TrueRow& row : motion.rows) path.push_back(row.pose);
-  RowVariables variables =
-      row_variables(world.drive.recording.drive, world.robot.geometry, motion.start, path, 0);
+  RowVariables variables = row_variables(testing::driven(world.drive.recording).drive,
+                                         world.robot.geometry, motion.start, path, 0);
   variables["reverses_left"] = reversals(world, -1.0);
   variables["reverses_right"] = reversals(world, 1.0);
   const std::set<Channel> instant = {Channel::compass, Channel::range, Channel::range_scale,

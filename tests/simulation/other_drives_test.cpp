@@ -124,10 +124,10 @@ TEST_P(SimulatedWheels, MisreadALegAsAWhole) {
   const Robot& robot = drive.model.robot;
   RoughNoise rough;
   rough.floor = true;
-  const Drive exact = with_wheels(simulate(robot).drive.recording, robot).drive;
+  const MotionRows exact = with_wheels(simulate(robot).drive.recording, robot).drive;
   const World world = simulate(robot, kNoiseFree, rough);
-  const Drive misread = with_wheels(world.drive.recording, robot).drive;
-  const auto path = [](const Drive& of, std::size_t row) {
+  const MotionRows misread = with_wheels(world.drive.recording, robot).drive;
+  const auto path = [](const MotionRows& of, std::size_t row) {
     return 0.5 * (of.left[row] + of.right[row]);
   };
   const TrueStop& a = world.drive.motion.stops[3];

@@ -62,8 +62,7 @@ void expect_alone(const std::function<std::string(int)>& work) {
 }
 
 struct World {
-  Recording recording =
-      testing::simulate_recording({.range_sensor = true, .tours = 1}, 5).recording;
+  Recording recording = testing::simulate_recording({.range_sensor = true, .tours = 1}, 5).read;
   Model model = [] {
     Model result;
     for (const auto& [channel, shape] :

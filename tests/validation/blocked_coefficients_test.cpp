@@ -20,7 +20,7 @@ using testing::InvertedOptions;
 
 constexpr int kBlocks = 5;
 
-Recording recorded(const Disturbance& disturbance, std::uint64_t seed) {
+DrivenRecording recorded(const Disturbance& disturbance, std::uint64_t seed) {
   InvertedOptions options;
   options.noisy = true;
   options.views = true;
@@ -47,7 +47,7 @@ TEST(BlockedCoefficients, AreThoseOfAFitWithoutTheBlocksSightings) {
   wheels.motion = [](const testing::RecordedRow& row) {
     return testing::Travelled{1.01 * row.ds(), 0.97 * row.dtheta()};
   };
-  const Recording recording = recorded(wheels, 61);
+  const DrivenRecording recording = recorded(wheels, 61);
   const Model model = with_effects({{Channel::travel, "1"}, {Channel::turn, "1"}});
   const ModelFit fit = fit_model({recording}, model);
   const FitState& state = *fit.state;
@@ -55,7 +55,7 @@ TEST(BlockedCoefficients, AreThoseOfAFitWithoutTheBlocksSightings) {
   const std::vector<Eigen::VectorXd> without = offsets_without_blocks(state, blocks);
   double moved = 0.0;
   for (int block = 0; block < kBlocks; ++block) {
-    Recording rest = recording;
+    DrivenRecording rest = recording;
     std::erase_if(rest.sightings,
                   [&](const Sighting& one) { return blocks.at(0, one.t) == block; });
     ASSERT_LT(rest.sightings.size(), recording.sightings.size());
@@ -73,7 +73,7 @@ TEST(BlockedCoefficients, AreThoseOfAFitWithoutTheBlocksSightings) {
 }
 
 TEST(BlockedCoefficients, WhatOneBlockAloneTellsGoesBackToNothing) {
-  const Recording recording = recorded({}, 62);
+  const DrivenRecording recording = recorded({}, 62);
   const double end = recording.drive.t.back();
   const std::string late = "max(0, sign(t - " + std::to_string(0.85 * end) + "))";
   const ModelFit fit = fit_model({recording}, with_effects({{Channel::travel, late}}));
@@ -103,7 +103,7 @@ TEST(BlockedCoefficients, BlocksShareEachSessionsTime) {
 // the other blocks they do so less (0.940 of before in the sample, 0.962 here: the smoothed path
 // itself follows sixteen vain effects a little).
 TEST(BlockedCoefficients, VainEffectsGainLessThanInTheSample) {
-  const Recording recording = recorded({}, 63);
+  const DrivenRecording recording = recorded({}, 63);
   std::vector<std::pair<Channel, std::string>> vain;
   const double end = recording.drive.t.back();
   for (int k = 1; k <= 8; ++k) {
@@ -128,7 +128,7 @@ TEST(HorizonChange, TellsTheBetterModelBeyondChance) {
   wheels.motion = [](const testing::RecordedRow& row) {
     return testing::Travelled{row.ds(), 0.97 * row.dtheta()};
   };
-  const Recording recording = recorded(wheels, 64);
+  const DrivenRecording recording = recorded(wheels, 64);
   const ModelFit without = fit_model({recording}, inverted_model());
   const ModelFit with = fit_model({recording}, with_effects({{Channel::turn, "1"}}));
   const HorizonChange better = horizon_change(*without.state, *with.state, 10.0);

@@ -4,6 +4,7 @@
 
 #include "criticism/disturbances.hpp"
 #include "criticism/score_test.hpp"
+#include "driven.hpp"
 #include "estimation/recording_problem.hpp"
 #include "fit/placed_drives.hpp"
 #include "trussmap/catalogue.hpp"
@@ -34,18 +35,19 @@ DisturbedCase case_of(const std::string& name) {
   throw std::runtime_error(name);
 }
 
-HeldOut predicted(const std::vector<Recording>& recordings, const Model& model,
+HeldOut predicted(const std::vector<DrivenRecording>& recordings, const Model& model,
                   const FitOptions& options = {}, const LegOptions& legs = {}) {
   return predict_held_out(recordings, fit_model(recordings, model, options), legs);
 }
 
-std::vector<LegSpan> spans(const std::vector<Recording>& recordings, const LegOptions& options) {
+std::vector<LegSpan> spans(const std::vector<DrivenRecording>& recordings,
+                           const LegOptions& options) {
   return leg_spans(recordings, make_problem(recordings, inverted_model()), options);
 }
 
 /// Truth rows at the end of every `every`-th row, and no sightings.
-Recording with_truth_alone(const InvertedRecording& simulated, std::size_t every) {
-  Recording recording = simulated.recording;
+DrivenRecording with_truth_alone(const InvertedRecording& simulated, std::size_t every) {
+  DrivenRecording recording = simulated.recording;
   recording.sightings.clear();
   recording.survey.clear();
   for (std::size_t row = every; row < simulated.places.size(); row += every) {
@@ -86,7 +88,7 @@ TEST(HeldOut, WhichLegsDependsOnTheirNumberAndTheShareAlone) {
 
 TEST(HeldOut, LegsRunFromReferenceToReference) {
   const InvertedRecording simulated = invert({}, {}, 53);
-  const std::vector<Recording> recordings = {simulated.recording};
+  const std::vector<DrivenRecording> recordings = {simulated.recording};
   const RecordingProblem problem = make_problem(recordings, inverted_model());
   const std::vector<LegSpan> legs = leg_spans(recordings, problem);
   // One standing sighting per stop, each of another landmark than the one before.
@@ -152,8 +154,8 @@ TEST(HeldOut, FiguresAreTheMeansOverTheLegs) {
 
 /// Spoils all rows and sightings strictly inside a block of held-out legs whose sightings are
 /// stamped this late.
-Recording spoiled(Recording recording, const std::vector<LegSpan>& legs, std::size_t first,
-                  double late = 0.0) {
+DrivenRecording spoiled(DrivenRecording recording, const std::vector<LegSpan>& legs,
+                        std::size_t first, double late = 0.0) {
   const double from = legs[first].time.from;
   const double to = legs[first + 4].time.to;
   for (std::size_t row = 0; row < recording.drive.rows(); ++row) {
@@ -188,14 +190,14 @@ TEST(HeldOut, NothingLeaksFromHeldOutLegs) {
        {"wheelbase", "hard iron", "cross-slope creep", "bearing offset", "sighting delay"}) {
     DisturbedCase one = case_of(name);
     one.options.noisy = true;
-    const Recording clean = invert(one.disturbance, one.options, 57).recording;
+    const DrivenRecording clean = invert(one.disturbance, one.options, 57).recording;
     const std::vector<LegSpan> legs = spans({clean}, {});
     std::size_t block = 0;
     for (std::size_t k = 0; k + 5 < legs.size(); k += 5) {
       if (legs[k].held_out) block = k;
     }
     ASSERT_GT(block, 25U);
-    const Recording bad = spoiled(clean, legs, block, name == "sighting delay" ? 0.5 : 0.0);
+    const DrivenRecording bad = spoiled(clean, legs, block, name == "sighting delay" ? 0.5 : 0.0);
     const Model model = inverted_model({catalogue_effect(name)});
     const double until = legs[block].time.from - 1.0;
     const auto expected = errors_until(predicted({clean}, model), until);
@@ -226,9 +228,9 @@ TEST(HeldOut, YawsTellTheHeadingAtALegsStart) {
     options.yaw_sd = 0.002;
     options.tours = 3;
     testing::PlacedDrive drive = testing::placed_drive(options, seed);
-    with += std::pow(predicted({drive.recording}, drive.model).arrival_rms, 2);
+    with += std::pow(predicted({testing::driven(drive.recording)}, drive.model).arrival_rms, 2);
     for (Sighting& one : drive.recording.sightings) one.yaw = kAbsent;
-    without += std::pow(predicted({drive.recording}, drive.model).arrival_rms, 2);
+    without += std::pow(predicted({testing::driven(drive.recording)}, drive.model).arrival_rms, 2);
   }
   EXPECT_LT(with, 0.8 * without);
 }
@@ -243,8 +245,9 @@ TEST(HeldOut, SlopesOfAYawEffectTakeItsErrorAway) {
     options.tours = 3;
     options.effects = {{"turned", Channel::sighting_yaw, {shape}, {g}, false}};
     const testing::PlacedDrive drive = testing::placed_drive(options, 66);
-    const FitState fit = fit_recordings({drive.recording}, drive.model);
-    const HeldOutLegs legs({drive.recording}, fit, FitterOptions());
+    const FitState fit = fit_recordings({testing::driven(drive.recording)}, drive.model);
+    const std::vector<DrivenRecording> recordings{testing::driven(drive.recording)};
+    const HeldOutLegs legs(recordings, fit, FitterOptions());
     ASSERT_GT(legs.metrics().legs.size(), 5U);
     Effect open = options.effects.front();
     open.coefficients.clear();
@@ -261,7 +264,7 @@ TEST(HeldOut, SlopesOfAYawEffectTakeItsErrorAway) {
 TEST(HeldOut, TheTrainingItselfKnowsNothingOfThem) {
   DisturbedCase one = case_of("wheelbase");
   one.options.noisy = true;
-  const Recording clean = invert(one.disturbance, one.options, 58).recording;
+  const DrivenRecording clean = invert(one.disturbance, one.options, 58).recording;
   const std::vector<LegSpan> legs = spans({clean}, {});
   FitterOptions options;
   options.problem.left_out.resize(1);
@@ -298,7 +301,7 @@ TEST(HeldOut, TheRightModelPredictsBetterThanTheWrongOne) {
     DisturbedCase one = case_of(name);
     one.options.noisy = true;
     one.options.compass = false;
-    const Recording recording = invert(one.disturbance, one.options, 59).recording;
+    const DrivenRecording recording = invert(one.disturbance, one.options, 59).recording;
     const HeldOut right = predicted({recording}, inverted_model({catalogue_effect(name)}));
     const HeldOut wrong = predicted({recording}, inverted_model());
     ASSERT_EQ(right.legs.size(), wrong.legs.size());
@@ -314,7 +317,7 @@ TEST(HeldOut, ExpectedErrorsAreAsLargeAsThoseOfTheRightModel) {
   for (const std::uint64_t seed : {71, 72, 73, 74, 75, 76, 77, 78}) {
     DisturbedCase one = case_of("wheelbase");
     one.options.noisy = true;
-    const Recording recording = invert(one.disturbance, one.options, seed).recording;
+    const DrivenRecording recording = invert(one.disturbance, one.options, seed).recording;
     const HeldOut held_out =
         predicted({recording}, inverted_model({catalogue_effect("wheelbase")}));
     double squares = 0.0;
@@ -335,7 +338,7 @@ TEST(HeldOut, ExpectedErrorsAreAsLargeAsThoseOfTheRightModel) {
 TEST(HeldOut, LegsBetweenTruthRowsArePredictedToo) {
   const DisturbedCase one = case_of("wheelbase");
   const InvertedRecording simulated = invert(one.disturbance, one.options, 60);
-  const Recording recording = with_truth_alone(simulated, 3);
+  const DrivenRecording recording = with_truth_alone(simulated, 3);
   const std::vector<LegSpan> legs = spans({recording}, {});
   for (const LegSpan& leg : legs) {
     double driven = 0.0;
@@ -359,7 +362,7 @@ TEST(HeldOut, ALandmarkOfHeldOutLegsAloneIsPassedOver) {
     InvertedOptions options;
     options.survey = survey;
     InvertedRecording simulated = invert({}, options, 61);
-    Recording& recording = simulated.recording;
+    DrivenRecording& recording = simulated.recording;
     const std::vector<LegSpan> legs = spans({recording}, {});
     // The end of the second leg of the first held-out block gets a name of its own.
     ASSERT_TRUE(legs[15].held_out);
@@ -396,7 +399,7 @@ TEST(HeldOut, ADriveThatNeverReturnsHasNothingToBePredicted) {
   // Behind the first held-out block nothing is tied to what was before it.
   InvertedOptions options;
   options.survey = options.compass = false;
-  Recording recording = invert({}, options, 63).recording;
+  DrivenRecording recording = invert({}, options, 63).recording;
   int number = 0;
   for (Sighting& sighting : recording.sightings) {
     sighting.landmark = "once" + std::to_string(number++);

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "driven.hpp"
 #include "scratch_folder.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/error.hpp"
@@ -18,8 +19,9 @@ namespace {
 
 using testing::ScratchFolder;
 
-std::vector<Recording> riddle() {
-  return {read_recording(std::filesystem::path(TRUSSMAP_SOURCE_DIR) / "maps/riddle")};
+std::vector<DrivenRecording> riddle() {
+  return {
+      testing::driven(read_recording(std::filesystem::path(TRUSSMAP_SOURCE_DIR) / "maps/riddle"))};
 }
 
 WorkbenchLog some_log() {
@@ -47,7 +49,8 @@ WorkbenchLog some_log() {
   return log;
 }
 
-std::string fault_of(const std::filesystem::path& file, const std::vector<Recording>& recordings) {
+std::string fault_of(const std::filesystem::path& file,
+                     const std::vector<DrivenRecording>& recordings) {
   try {
     static_cast<void>(read_workbench_log(file, recordings));
   } catch (const InputError& error) {
@@ -58,7 +61,7 @@ std::string fault_of(const std::filesystem::path& file, const std::vector<Record
 
 TEST(WorkbenchLog, ReadsBackExactly) {
   const ScratchFolder scratch;
-  const std::vector<Recording> recordings = riddle();
+  const std::vector<DrivenRecording> recordings = riddle();
   const WorkbenchLog log = some_log();
   const std::string text = format_workbench_log(log, recordings);
   const WorkbenchLog read = read_workbench_log(scratch.write("steps.json", text), recordings);
@@ -84,7 +87,7 @@ TEST(WorkbenchLog, ReadsBackExactly) {
 
 TEST(WorkbenchLog, OfOtherRecordingsIsRefused) {
   const ScratchFolder scratch;
-  std::vector<Recording> recordings = riddle();
+  std::vector<DrivenRecording> recordings = riddle();
   const auto file = scratch.write("steps.json", format_workbench_log(some_log(), recordings));
   recordings.front().drive.left.front() += 1e-9;
   EXPECT_NE(fault_of(file, recordings).find("other recordings"), std::string::npos);
@@ -92,7 +95,7 @@ TEST(WorkbenchLog, OfOtherRecordingsIsRefused) {
 
 TEST(WorkbenchLog, WhatIsNoLogIsRefusedInOneLine) {
   const ScratchFolder scratch;
-  const std::vector<Recording> recordings = riddle();
+  const std::vector<DrivenRecording> recordings = riddle();
   nlohmann::ordered_json log =
       nlohmann::ordered_json::parse(format_workbench_log(some_log(), recordings));
   const auto with = [&](const char* pointer, const nlohmann::ordered_json& value) {

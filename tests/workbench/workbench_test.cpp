@@ -4,6 +4,7 @@
 // The workbench on maps/riddle, whose hidden effect is a compass with hard iron.
 #include "trussmap/workbench.hpp"
 
+#include "driven.hpp"
 #include "estimation/simulated_recordings.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/model_file.hpp"
@@ -26,8 +27,8 @@ namespace {
 
 const std::filesystem::path kRiddle = std::filesystem::path(TRUSSMAP_SOURCE_DIR) / "maps/riddle";
 
-const std::vector<Recording>& riddle() {
-  static const std::vector<Recording> recordings{read_recording(kRiddle)};
+const std::vector<DrivenRecording>& riddle() {
+  static const std::vector<DrivenRecording> recordings{testing::driven(read_recording(kRiddle))};
   return recordings;
 }
 
@@ -363,8 +364,8 @@ TEST(Workbench, PointsAreOfTheLegsThatAreChosen) {
   for (double& heading : wrong.recording.drive.heading) heading += kIron * std::sin(heading);
   DiagnoseOptions options;
   options.estimate_noise = false;
-  const TriedModel model(std::make_shared<const std::vector<Recording>>(
-                             std::vector<Recording>{right.recording, wrong.recording}),
+  const TriedModel model(std::make_shared<const std::vector<DrivenRecording>>(
+                             std::vector<DrivenRecording>{right.recording, wrong.recording}),
                          right.model, options);
   for (const std::size_t recording : {0U, 1U}) {
     std::vector<std::size_t> legs;

@@ -26,7 +26,7 @@ Pose seen_from(const Pose& from, const Pose& to) {
   return {way.x(), way.y(), to.heading - from.heading};
 }
 
-double first_time(const Recording& recording) {
+double first_time(const DrivenRecording& recording) {
   double first = recording.drive.start();
   if (!recording.truth.empty()) first = std::min(first, recording.truth.front().t);
   if (!recording.fixes.empty()) first = std::min(first, recording.fixes.front().t);
@@ -36,7 +36,7 @@ double first_time(const Recording& recording) {
 /// A recording on its way into a bag, topic by topic.
 class RecordingBag {
  public:
-  RecordingBag(const Recording& recording, const Model& model, const BagOptions& options)
+  RecordingBag(const DrivenRecording& recording, const Model& model, const BagOptions& options)
       : recording_(recording),
         drive_(recording.drive),
         model_(model),
@@ -223,8 +223,8 @@ class RecordingBag {
     }
   }
 
-  const Recording& recording_;
-  const Drive& drive_;
+  const DrivenRecording& recording_;
+  const MotionRows& drive_;
   Model model_;
   const BagOptions& options_;
   BagBuilder bag_;
@@ -263,7 +263,7 @@ Bag format_recording_bag(const Recording& recording, const Model& model,
   if (!(options.wheel_radius > 0.0 && std::isfinite(options.wheel_radius))) {
     throw std::invalid_argument("the wheel radius must be above 0");
   }
-  const Recording taken = with_wheels(recording, model.robot);
+  const DrivenRecording taken = with_wheels(recording, model.robot);
   return RecordingBag(taken, model, options).run();
 }
 

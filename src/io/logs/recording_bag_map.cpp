@@ -20,7 +20,7 @@ bool any_read(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double one) { return !std::isnan(one); });
 }
 
-void add_drive(MapText& map, const BagMapParts& parts, const Drive& drive, double radius) {
+void add_drive(MapText& map, const BagMapParts& parts, const MotionRows& drive, double radius) {
   for (const BagMapParts::Wheel& one : parts.wheels) {
     map.blank();
     map.table("wheels." + one.column);
@@ -79,7 +79,7 @@ void add_survey(MapText& map, const std::vector<SurveyPoint>& survey) {
 
 }  // namespace
 
-std::string bag_map(const Bag& bag, const BagMapParts& parts, const Recording& recording,
+std::string bag_map(const Bag& bag, const BagMapParts& parts, const DrivenRecording& recording,
                     const Model& model, const BagOptions& options) {
   MapText map;
   map.line(format_model(model));

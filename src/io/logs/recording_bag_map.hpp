@@ -27,7 +27,7 @@ struct BagMapParts {
 
 /// `bag` has its topics. The survey, which no message holds, stands in the map itself.
 [[nodiscard]] std::string bag_map(const Bag& bag, const BagMapParts& parts,
-                                  const Recording& recording, const Model& model,
+                                  const DrivenRecording& recording, const Model& model,
                                   const BagOptions& options);
 
 }  // namespace trussmap

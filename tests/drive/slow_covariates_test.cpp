@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "recording/slow_covariates.hpp"
+#include "drive/slow_covariates.hpp"
 
 #include <cmath>
 #include <random>
@@ -11,10 +11,10 @@ namespace trussmap::slow_covariates_test {
 namespace {
 
 /// 20 minutes of rows of 0.1 s, with columns of all kinds. Seed 1.
-Recording day(double warmer = 0.0) {
+DrivenRecording day(double warmer = 0.0) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
-  Recording recording;
+  DrivenRecording recording;
   std::vector<Covariate> columns{{"motor_heat", {}}, {"battery_V", {}}, {"noisy_heat", {}},
                                  {"payload_kg", {}}, {"lights", {}},    {"constant", {}},
                                  {"shaking", {}}};
@@ -44,14 +44,14 @@ TEST(SlowCovariates, AreThoseThatGoWithTimeWhateverTheirNames) {
 }
 
 TEST(SlowCovariates, HaveToBeInEveryRecording) {
-  Recording bare = day();
+  DrivenRecording bare = day();
   bare.drive.covariates.erase(bare.drive.covariates.begin());
   EXPECT_EQ(slow_covariates({day(), bare}), (std::vector<std::string>{"battery_V", "noisy_heat"}));
   EXPECT_TRUE(slow_covariates({}).empty());
 }
 
 TEST(SlowCovariates, NeedEnoughRowsToSaySo) {
-  Recording brief = day();
+  DrivenRecording brief = day();
   for (Covariate& one : brief.drive.covariates) one.values.resize(50);
   brief.drive.t.resize(50);
   brief.drive.left.resize(50);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "recording/well_formed.hpp"
+#include "drive/well_formed.hpp"
 
 #include "text/number_text.hpp"
 
@@ -13,18 +13,18 @@
 namespace trussmap {
 namespace {
 
-[[noreturn]] void refuse(const Recording& recording, const std::string& what) {
+[[noreturn]] void refuse(const Observations& recording, const std::string& what) {
   throw std::invalid_argument("recording \"" + recording.name + "\": " + what);
 }
 
-void require_rows(const Recording& recording, const std::string& name,
+void require_rows(const DrivenRecording& recording, const std::string& name,
                   const std::vector<double>& column) {
   if (column.size() == recording.drive.rows()) return;
   refuse(recording, joined("column ", name, " of the drive has ", column.size(), " rows, expected ",
                            recording.drive.rows(), " as t has"));
 }
 
-void require_finite(const Recording& recording, const std::string& name,
+void require_finite(const DrivenRecording& recording, const std::string& name,
                     const std::vector<double>& column) {
   for (std::size_t row = 0; row < column.size(); ++row) {
     if (std::isfinite(column[row])) continue;
@@ -33,8 +33,8 @@ void require_finite(const Recording& recording, const std::string& name,
   }
 }
 
-void require_drive(const Recording& recording) {
-  const Drive& drive = recording.drive;
+void require_drive(const DrivenRecording& recording) {
+  const MotionRows& drive = recording.drive;
   if (drive.rows() < 2) {
     refuse(recording, joined("the drive has ", drive.rows(), " rows, expected two at least"));
   }
@@ -64,7 +64,7 @@ void require_drive(const Recording& recording) {
 }
 
 template <typename Rows>
-void require_order(const Recording& recording, const char* name, const Rows& rows) {
+void require_order(const DrivenRecording& recording, const char* name, const Rows& rows) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (std::isfinite(rows[k].t) && (k == 0 || rows[k].t >= rows[k - 1].t)) continue;
     refuse(recording,
@@ -72,8 +72,8 @@ void require_order(const Recording& recording, const char* name, const Rows& row
   }
 }
 
-void require_sightings(const Recording& recording) {
-  const Drive& drive = recording.drive;
+void require_sightings(const DrivenRecording& recording) {
+  const MotionRows& drive = recording.drive;
   require_order(recording, "sightings", recording.sightings);
   const double slack = clock_slack(drive);
   for (const Sighting& one : recording.sightings) {
@@ -103,8 +103,8 @@ bool is_sd(double sd) {
   return std::isnan(sd) || (sd > 0.0 && std::isfinite(sd));
 }
 
-void require_loops(const Recording& recording) {
-  const Drive& drive = recording.drive;
+void require_loops(const DrivenRecording& recording) {
+  const MotionRows& drive = recording.drive;
   const double slack = clock_slack(drive);
   const auto inside = [&](double t) {
     return t >= drive.start() - slack && t <= drive.t.back() + slack;
@@ -120,7 +120,7 @@ void require_loops(const Recording& recording) {
   }
 }
 
-void require_places(const Recording& recording) {
+void require_places(const DrivenRecording& recording) {
   require_order(recording, "truth rows", recording.truth);
   for (const TruthRow& row : recording.truth) {
     if (std::isfinite(row.x) && std::isfinite(row.y) && std::isfinite(row.heading)) continue;
@@ -142,19 +142,19 @@ void require_places(const Recording& recording) {
 
 }  // namespace
 
-double clock_slack(const Drive& drive) {
+double clock_slack(const DriveColumns& drive) {
   return 1e-9 + 8.0 * std::numeric_limits<double>::epsilon() * std::abs(drive.t.back());
 }
 
-void require_well_formed(const Recording& recording) {
+void require_well_formed(const DrivenRecording& recording) {
   require_drive(recording);
   require_sightings(recording);
   require_places(recording);
   require_loops(recording);
 }
 
-void require_well_formed(const std::vector<Recording>& recordings) {
-  for (const Recording& one : recordings) require_well_formed(one);
+void require_well_formed(const std::vector<DrivenRecording>& recordings) {
+  for (const DrivenRecording& one : recordings) require_well_formed(one);
 }
 
 }  // namespace trussmap

@@ -13,7 +13,7 @@
 //          \--leg--/ \---leg----/             reference: a sighting in between
 #pragma once
 
-#include "trussmap/recording.hpp"
+#include "trussmap/robot.hpp"
 
 #include <vector>
 
@@ -35,14 +35,15 @@ struct Leg {
 [[nodiscard]] std::vector<Stop> stops_of(const std::vector<Sighting>& sightings);
 
 /// Driven path of the axle's centre from the drive's start to the end of each row, m.
-[[nodiscard]] std::vector<double> driven_path(const Drive& drive);
+[[nodiscard]] std::vector<double> driven_path(const MotionRows& drive);
 
 /// The path at time t, linear within a row. `path` is driven_path(drive), or whatever else grows
 /// from 0 at the drive's start and is given at the end of each row.
-[[nodiscard]] double path_at(const Drive& drive, const std::vector<double>& path, double t);
+[[nodiscard]] double path_at(const DriveColumns& drive, const std::vector<double>& path, double t);
 
 /// Legs in order. A recording without sightings has none.
-[[nodiscard]] std::vector<Leg> legs_of(const Recording& recording, const std::vector<Stop>& stops,
+[[nodiscard]] std::vector<Leg> legs_of(const DrivenRecording& recording,
+                                       const std::vector<Stop>& stops,
                                        double min_drive = kDefaultMinDrive);
 
 /// Whether a leg of this number is held out, of which `share` in [0, 1) are: legs are taken in

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Stops and legs as the file format defines them.
-#include "recording/legs.hpp"
+#include "drive/legs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@ namespace trussmap::legs_test {
 namespace {
 
 /// One metre a second for ten seconds, in rows of one second.
-Recording straight_drive(std::vector<Sighting> sightings) {
-  Recording recording;
+DrivenRecording straight_drive(std::vector<Sighting> sightings) {
+  DrivenRecording recording;
   for (int k = 1; k <= 10; ++k) {
     recording.drive.t.push_back(k);
     recording.drive.left.push_back(1.0);
@@ -34,7 +34,7 @@ TEST(Stops, ShareATimeAndReferToTheLandmarkStoodOnElseTheNearest) {
 }
 
 TEST(Legs, JoinDifferentReferencesFarEnoughApart) {
-  const Recording recording =
+  const DrivenRecording recording =
       straight_drive({{0.0, "A"}, {2.0, "A"}, {4.0, "B"}, {4.2, "C"}, {5.0, "C"}, {9.0, "A"}});
   const std::vector<Stop> stops = stops_of(recording.sightings);
   const std::vector<Leg> legs = legs_of(recording, stops);
@@ -48,7 +48,7 @@ TEST(Legs, JoinDifferentReferencesFarEnoughApart) {
 }
 
 TEST(Legs, ReverseCountsAsDrivenPathAndRowsAreCutLinearly) {
-  Recording recording = straight_drive({});
+  DrivenRecording recording = straight_drive({});
   recording.drive.left[5] = recording.drive.right[5] = -1.0;
   const std::vector<double> path = driven_path(recording.drive);
   EXPECT_DOUBLE_EQ(path.back(), 10.0);

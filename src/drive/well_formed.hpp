@@ -4,7 +4,7 @@
 // What recording.hpp asks of a recording that a caller has put together.
 #pragma once
 
-#include "trussmap/recording.hpp"
+#include "trussmap/robot.hpp"
 
 #include <vector>
 
@@ -12,13 +12,13 @@ namespace trussmap {
 
 /// How far a time may lie outside a drive, s: times are written in decimals, so that what is
 /// reckoned from them misses a start or an end by a rounding error.
-[[nodiscard]] double clock_slack(const Drive& drive);
+[[nodiscard]] double clock_slack(const DriveColumns& drive);
 
 /// Throws std::invalid_argument, naming the recording, the column and the place, where a drive has
 /// fewer than two rows or columns that differ in length, times do not increase (of sightings and
 /// truth: decrease), a sighting lies outside the drive or has a bearing without a range, or a
 /// number is not finite that must be.
-void require_well_formed(const Recording& recording);
-void require_well_formed(const std::vector<Recording>& recordings);
+void require_well_formed(const DrivenRecording& recording);
+void require_well_formed(const std::vector<DrivenRecording>& recordings);
 
 }  // namespace trussmap

@@ -5,7 +5,7 @@
 // looks like what goes with time or distance.
 #pragma once
 
-#include "trussmap/recording.hpp"
+#include "trussmap/robot.hpp"
 
 #include <string>
 #include <vector>
@@ -14,6 +14,7 @@ namespace trussmap {
 
 /// Names of the covariates that all recordings have and that vary between tenths of a recording
 /// rather than within them: at most a tenth of their variance is within.
-[[nodiscard]] std::vector<std::string> slow_covariates(const std::vector<Recording>& recordings);
+[[nodiscard]] std::vector<std::string> slow_covariates(
+    const std::vector<DrivenRecording>& recordings);
 
 }  // namespace trussmap

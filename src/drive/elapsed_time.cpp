@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "recording/elapsed_time.hpp"
+#include "drive/elapsed_time.hpp"
 
 namespace trussmap {
 
-std::vector<double> elapsed_shifts(const std::vector<Recording>& recordings) {
+std::vector<double> elapsed_shifts(const std::vector<DrivenRecording>& recordings) {
   std::vector<double> shifts;
   double before = 0.0;
-  for (const Recording& one : recordings) {
-    const Drive& drive = one.drive;
+  for (const DrivenRecording& one : recordings) {
+    const MotionRows& drive = one.drive;
     if (drive.rows() == 0) {
       shifts.push_back(before);
       continue;

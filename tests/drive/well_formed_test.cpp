@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "recording/well_formed.hpp"
+#include "drive/well_formed.hpp"
 
 #include "trussmap/build_map.hpp"
 #include "trussmap/calibrate.hpp"
@@ -16,8 +16,8 @@ namespace trussmap::well_formed_test {
 namespace {
 
 /// Ten rows straight ahead, from landmark A to landmark B.
-Recording straight() {
-  Recording recording;
+DrivenRecording straight() {
+  DrivenRecording recording;
   recording.name = "mine";
   for (int row = 1; row <= 10; ++row) {
     recording.drive.t.push_back(row);
@@ -31,8 +31,8 @@ Recording straight() {
   return recording;
 }
 
-std::string refusal(const std::function<void(Recording&)>& spoil) {
-  Recording recording = straight();
+std::string refusal(const std::function<void(DrivenRecording&)>& spoil) {
+  DrivenRecording recording = straight();
   spoil(recording);
   try {
     require_well_formed(recording);
@@ -43,9 +43,9 @@ std::string refusal(const std::function<void(Recording&)>& spoil) {
 }
 
 TEST(WellFormed, ARecordingAsDescribedIs) {
-  EXPECT_EQ(refusal([](Recording&) {}), "accepted");
-  EXPECT_EQ(refusal([](Recording& r) { r.drive.heading.clear(); }), "accepted");
-  EXPECT_EQ(refusal([](Recording& r) {
+  EXPECT_EQ(refusal([](DrivenRecording&) {}), "accepted");
+  EXPECT_EQ(refusal([](DrivenRecording& r) { r.drive.heading.clear(); }), "accepted");
+  EXPECT_EQ(refusal([](DrivenRecording& r) {
               r.truth = {{-5.0, 0.0, 0.0, 0.0}, {99.0, 4.0, 0.0, 0.0}};
             }),
             "accepted");
@@ -54,37 +54,40 @@ TEST(WellFormed, ARecordingAsDescribedIs) {
 TEST(WellFormed, WhatIsWrongIsNamed) {
   struct Spoilt {
     const char* expected;
-    std::function<void(Recording&)> by;
+    std::function<void(DrivenRecording&)> by;
   };
   const std::vector<Spoilt> all = {
       {"column left of the drive has 9 rows, expected 10",
-       [](Recording& r) { r.drive.left.pop_back(); }},
-      {"column right of the drive has 0 rows", [](Recording& r) { r.drive.right.clear(); }},
-      {"column heading of the drive has 3 rows", [](Recording& r) { r.drive.heading.resize(3); }},
+       [](DrivenRecording& r) { r.drive.left.pop_back(); }},
+      {"column right of the drive has 0 rows", [](DrivenRecording& r) { r.drive.right.clear(); }},
+      {"column heading of the drive has 3 rows",
+       [](DrivenRecording& r) { r.drive.heading.resize(3); }},
       {"column load of the drive has 11 rows",
-       [](Recording& r) { r.drive.covariates[0].values.push_back(1.0); }},
+       [](DrivenRecording& r) { r.drive.covariates[0].values.push_back(1.0); }},
       {"column left of the drive is not finite in row 2",
-       [](Recording& r) { r.drive.left[2] = kAbsent; }},
+       [](DrivenRecording& r) { r.drive.left[2] = kAbsent; }},
       {"t of the drive does not increase in row 6",
-       [](Recording& r) { std::swap(r.drive.t[5], r.drive.t[6]); }},
+       [](DrivenRecording& r) { std::swap(r.drive.t[5], r.drive.t[6]); }},
       {"sightings are not in order of time",
-       [](Recording& r) { std::swap(r.sightings[0], r.sightings[1]); }},
+       [](DrivenRecording& r) { std::swap(r.sightings[0], r.sightings[1]); }},
       {"the sighting of A at t = -50 s is outside the drive, expected 0 to 10 s",
-       [](Recording& r) { r.sightings[0].t = -50.0; }},
+       [](DrivenRecording& r) { r.sightings[0].t = -50.0; }},
       {"the sighting of B at t = 1e+06 s is outside the drive",
-       [](Recording& r) { r.sightings[2].t = 1e6; }},
+       [](DrivenRecording& r) { r.sightings[2].t = 1e6; }},
       {"truth rows are not in order of time",
-       [](Recording& r) { r.truth[1].t = std::numeric_limits<double>::quiet_NaN(); }},
-      {"the truth at t = 9 s is not finite", [](Recording& r) { r.truth[1].y = kAbsent; }},
+       [](DrivenRecording& r) { r.truth[1].t = std::numeric_limits<double>::quiet_NaN(); }},
+      {"the truth at t = 9 s is not finite", [](DrivenRecording& r) { r.truth[1].y = kAbsent; }},
       {"the survey of A is not finite",
-       [](Recording& r) {
+       [](DrivenRecording& r) {
          r.survey = {{"A", 1.0, kAbsent}};
        }},
       {"the sighting of C at t = 5 s has a range or a bearing that is negative",
-       [](Recording& r) { r.sightings[1].range = -2.0; }},
+       [](DrivenRecording& r) { r.sightings[1].range = -2.0; }},
       {"the drive has 1 rows, expected two at least",
-       [](Recording& r) {
-         r.drive = {{1.0}, {0.5}, {0.5}, {}, {}};
+       [](DrivenRecording& r) {
+         r.drive = {};
+         r.drive.t = {1.0};
+         r.drive.left = r.drive.right = {0.5};
        }},
   };
   for (const Spoilt& one : all) {
@@ -95,7 +98,7 @@ TEST(WellFormed, WhatIsWrongIsNamed) {
 }
 
 TEST(WellFormed, EveryCallThatReadsRecordingsAsksForIt) {
-  Recording recording = straight();
+  DrivenRecording recording = straight();
   recording.drive.left.clear();
   EXPECT_THROW(static_cast<void>(build_map({recording}, Model())), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(build_map({recording}, Model(), {.method = Method::adjustment})),

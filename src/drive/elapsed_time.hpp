@@ -4,7 +4,7 @@
 // Recordings one after the other on one axis of time.
 #pragma once
 
-#include "trussmap/recording.hpp"
+#include "trussmap/robot.hpp"
 
 #include <vector>
 
@@ -12,6 +12,6 @@ namespace trussmap {
 
 /// Per recording what to add to its times, s: the first begins at 0, each where the one before
 /// ends.
-[[nodiscard]] std::vector<double> elapsed_shifts(const std::vector<Recording>& recordings);
+[[nodiscard]] std::vector<double> elapsed_shifts(const std::vector<DrivenRecording>& recordings);
 
 }  // namespace trussmap

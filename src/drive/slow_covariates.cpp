@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "recording/slow_covariates.hpp"
+#include "drive/slow_covariates.hpp"
 
 #include <algorithm>
 
@@ -25,19 +25,19 @@ struct Squares {
   }
 };
 
-const Covariate* find(const Recording& recording, const std::string& name) {
+const Covariate* find(const DrivenRecording& recording, const std::string& name) {
   for (const Covariate& one : recording.drive.covariates) {
     if (one.name == name) return &one;
   }
   return nullptr;
 }
 
-bool is_slow(const std::string& name, const std::vector<Recording>& recordings) {
+bool is_slow(const std::string& name, const std::vector<DrivenRecording>& recordings) {
   Squares total;
   double within = 0.0;
-  for (const Recording& recording : recordings) {
+  for (const DrivenRecording& recording : recordings) {
     const Covariate* covariate = find(recording, name);
-    const Drive& drive = recording.drive;
+    const MotionRows& drive = recording.drive;
     if (covariate == nullptr || drive.rows() < kRows * kBlocks) return false;
     std::vector<Squares> blocks(kBlocks);
     const double length = drive.t.back() - drive.t.front();
@@ -53,7 +53,7 @@ bool is_slow(const std::string& name, const std::vector<Recording>& recordings) 
 
 }  // namespace
 
-std::vector<std::string> slow_covariates(const std::vector<Recording>& recordings) {
+std::vector<std::string> slow_covariates(const std::vector<DrivenRecording>& recordings) {
   std::vector<std::string> names;
   if (recordings.empty()) return names;
   for (const Covariate& one : recordings.front().drive.covariates) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "recording/legs.hpp"
+#include "drive/legs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ std::vector<Stop> stops_of(const std::vector<Sighting>& sightings) {
   return stops;
 }
 
-std::vector<double> driven_path(const Drive& drive) {
+std::vector<double> driven_path(const MotionRows& drive) {
   std::vector<double> path(drive.rows());
   double sum = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
@@ -40,7 +40,7 @@ std::vector<double> driven_path(const Drive& drive) {
   return path;
 }
 
-double path_at(const Drive& drive, const std::vector<double>& path, double t) {
+double path_at(const DriveColumns& drive, const std::vector<double>& path, double t) {
   const auto after = std::lower_bound(drive.t.begin(), drive.t.end(), t);
   if (after == drive.t.end()) return path.back();
   const auto row = static_cast<std::size_t>(after - drive.t.begin());
@@ -50,7 +50,7 @@ double path_at(const Drive& drive, const std::vector<double>& path, double t) {
   return path_begin + part * (path[row] - path_begin);
 }
 
-std::vector<Leg> legs_of(const Recording& recording, const std::vector<Stop>& stops,
+std::vector<Leg> legs_of(const DrivenRecording& recording, const std::vector<Stop>& stops,
                          double min_drive) {
   std::vector<Leg> legs;
   if (stops.empty()) return legs;
