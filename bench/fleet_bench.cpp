@@ -92,7 +92,7 @@ std::vector<FleetRow> drive_fleet(const Options& options, std::uint64_t seed,
       const Tours tours = make_tours(mesh, WalkKind::euler, options.tours, walk_random);
       const SimulatedDrive drive = simulate_drive(mesh, tours.walk, {}, {}, own, effects);
       FleetRow row = fleet_row(name, fmt::format("2026-03-{:02}", 1 + kBetweenDays * day),
-                               {drive.recording}, model, text);
+                               {with_wheels(drive.recording, model.robot)}, model, text);
       row.metadata = {{"tyre batch", tyre}, {"floor", floor}, {"software", software}};
       rows.push_back(std::move(row));
     }

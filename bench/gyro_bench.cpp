@@ -4,7 +4,6 @@
 // Many drives with a gyro, compass and survey: which effects of the gyro are named, and what is
 // named where nothing is missing, or where the bias walks at random.
 #include "bench_program.hpp"
-#include "driven.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/noise_fit.hpp"
@@ -49,7 +48,8 @@ DrivenRecording driven(std::uint64_t seed, double walk, const std::vector<Effect
   robot.gyro = true;
   robot.noise.gyro = kGyroNoise;
   robot.noise.gyro_walk = walk;
-  return testing::driven(simulate_drive(mesh, tours.walk, {}, robot, seed, {effects}).recording);
+  return with_wheels(simulate_drive(mesh, tours.walk, {}, robot, seed, {effects}).recording,
+                     Robot());
 }
 
 bool is_named(const Finding& finding, const std::string& name) {

@@ -6,7 +6,6 @@
 // intervals hold the truth, is anything named where nothing is missing, and is a camera that is
 // mounted turned named?
 #include "bench_program.hpp"
-#include "driven.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/fit_model.hpp"
@@ -32,8 +31,9 @@ DrivenRecording marked_drive(int k, std::uint64_t first_seed, const std::vector<
   robot.markers = true;
   robot.compass = k % 2 == 0;
   robot.range_sensor = k / 2 % 2 == 0;
-  return testing::driven(
-      simulate_drive(mesh, tours.walk, {}, robot, seed, SimulatedEffects{effects}).recording);
+  return with_wheels(
+      simulate_drive(mesh, tours.walk, {}, robot, seed, SimulatedEffects{effects}).recording,
+      Robot());
 }
 
 struct Options {

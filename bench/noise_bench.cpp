@@ -15,7 +15,6 @@
 //               and intervals hold there?
 #include "bench_program.hpp"
 #include "bench_worlds.hpp"
-#include "driven.hpp"
 #include "fit/fit_state.hpp"
 #include "fit/replicated_recording.hpp"
 #include "trussmap/discover.hpp"
@@ -302,7 +301,7 @@ void sizes(const Options& options) {
 
 void posterior(const Options& options) {
   for (const std::string& folder : options.given) {
-    const std::vector<DrivenRecording> recordings{testing::driven(read_recording(folder))};
+    const std::vector<DrivenRecording> recordings{with_wheels(read_recording(folder), Robot())};
     const Model given = read_model(std::filesystem::path(folder) / "model.toml");
     DiscoverOptions discovering;
     discovering.diagnosis.fit = as_the_command_has_it();

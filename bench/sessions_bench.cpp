@@ -7,7 +7,6 @@
 //   world, a tour a day --simulate_drive--> days 1 ... N --SummarisedFit::add--> map
 //                                                  day N + 1 --add--> its processor time
 //                                            days 1 ... N + 1 --fit_model--> its processor time
-#include "driven.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/fit_model.hpp"
 #include "trussmap/simulation.hpp"
@@ -59,7 +58,8 @@ std::vector<DrivenRecording> days_of(const Options& options, int count) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(day);
     std::mt19937_64 random = random_stream(seed, Stream::walk);
     const Tours tours = make_tours(mesh, WalkKind::euler, options.tours, random);
-    days.push_back(testing::driven(simulate_drive(mesh, tours.walk, {}, robot, seed).recording));
+    days.push_back(
+        with_wheels(simulate_drive(mesh, tours.walk, {}, robot, seed).recording, Robot()));
     days.back().name = fmt::format("day {}", day + 1);
     if (!options.survey) days.back().survey.clear();
   }

@@ -3,7 +3,6 @@
 //
 // How much faster two threads are than one, by the clock, in one run: each in turn, the least of
 // several. Digits are compared as well.
-#include "driven.hpp"
 #include "linalg/block_system.hpp"
 #include "linalg/dissection.hpp"
 #include "trussmap/diagnose.hpp"
@@ -101,7 +100,7 @@ int main(int argc, char** argv) try {
   if (!folders.empty()) {
     std::vector<DrivenRecording> recordings;
     for (const std::string& folder : folders)
-      recordings.push_back(testing::driven(read_recording(folder)));
+      recordings.push_back(with_wheels(read_recording(folder), Robot()));
     const Model model = model_file.empty() ? Model{} : read_model(model_file);
     compare_threads("diagnose", rounds, [&] {
       const Diagnosis result = diagnose(recordings, model);

@@ -15,10 +15,10 @@
 namespace trussmap::bench {
 namespace {
 
-DrivenRecording random_drive(int rows) {
+Recording random_drive(int rows) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
-  DrivenRecording recording;
+  Recording recording;
   recording.drive.covariates.push_back({"temperature", {}});
   for (int row = 1; row <= rows; ++row) {
     recording.drive.t.push_back(0.02 * row);
@@ -65,7 +65,7 @@ void input_part(int rows, int repetitions) {
                                      return read;
                                    }},
                                   {"trussmap, checked", [&](Stages& s) {
-                                     const DrivenRecording recording = read_recording(folder);
+                                     const Recording recording = read_recording(folder);
                                      s.end("read");
                                      return static_cast<double>(recording.drive.rows());
                                    }}};
