@@ -64,6 +64,12 @@ inline OtherDrive other_drive(DriveKind kind) {
   drive.rows = driven(!drive.steers && kind != DriveKind::skid_steer);
   drive.constants = {Channel::turn};
   switch (kind) {
+    case DriveKind::unicycle:
+      robot.columns = {"travel", "turn"};
+      drive.rows = driven(false);
+      drive.constants = {Channel::turn, Channel::travel, Channel::wheels};
+      drive.wheels = [](const Twist& row) { return std::vector<double>{row.f, row.a}; };
+      return drive;
     case DriveKind::skid_steer:
       robot.columns = {"fl", "rl", "fr", "rr"};
       drive.constants.push_back(Channel::wheels);
@@ -175,6 +181,16 @@ inline Wheels with_effect(const OtherDrive& drive, Channel channel, double g) {
 inline Wheels noisy(const OtherDrive& drive, const Wheels& wheels, std::mt19937_64& random) {
   const Noise& noise = drive.model.noise;
   const double k = std::sqrt(0.5 * (noise.left * noise.left + noise.right * noise.right));
+  if (drive.model.robot.drive == DriveKind::unicycle) {  // two wheels err, and show it together
+    return [wheels, k, b = drive.model.robot.wheelbase, &random](const Twist& row) {
+      std::normal_distribution<double> normal;
+      const std::vector<double> shown = wheels(row);
+      const double apart = 0.5 * b * shown[1];
+      const double left = k * std::sqrt(std::abs(shown[0] - apart)) * normal(random);
+      const double right = k * std::sqrt(std::abs(shown[0] + apart)) * normal(random);
+      return std::vector<double>{shown[0] + 0.5 * (left + right), shown[1] + (right - left) / b};
+    };
+  }
   return [wheels, k, steer = noise.steer, steers = drive.steers, &random](const Twist& row) {
     std::normal_distribution<double> normal;
     std::vector<double> shown = wheels(row);

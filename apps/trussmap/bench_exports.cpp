@@ -101,6 +101,7 @@ std::string odometry(const BenchView& view) {
   std::vector<std::string> covariates;
   for (const Covariate& one : first.drive.covariates) covariates.push_back("\"" + one.name + "\"");
   const bool two = robot.drive == DriveKind::differential;
+  const bool turns_by_gyro = robot.drive == DriveKind::unicycle && robot.columns.size() == 1;
   return fmt::format(
       "// Odometry corrected by model.toml, row by row. Link trussmap::trussmap.\n"
       "#include <trussmap/corrected_odometry.hpp>\n#include <trussmap/model_file.hpp>\n\n"
@@ -113,7 +114,8 @@ std::string odometry(const BenchView& view) {
       "{}"
       "  const trussmap::Pose pose = odometry.pose().pose;\n"
       "  std::printf(\"%.4f %.4f %.4f\\n\", pose.x, pose.y, pose.heading);\n}}\n",
-      fmt::join(covariates, ", "), first.drive.has_compass(), first.drive.has_gyro(),
+      fmt::join(covariates, ", "), first.drive.has_compass(),
+      first.drive.has_gyro() || turns_by_gyro,
       two ? "  row.left = 0.05;      // m, travel of the left wheel\n"
             "  row.right = 0.05;     // m\n"
           : fmt::format("  row.readings = std::vector<double>({});  // the model's columns\n",

@@ -98,8 +98,8 @@ void add_wheel_options(const Command& command, SimulateOptions& options) {
       .add_option("--drive", options.drive,
                   "How wheels move the robot: two wheels, or others with the columns that "
                   "docs/formats.md names (wheels: four omni wheels across its diagonals)")
-      .check(one_of(
-          {"differential", "skid-steer", "tricycle", "ackermann", "omni3", "mecanum", "wheels"}))
+      .check(one_of({"differential", "unicycle", "skid-steer", "tricycle", "ackermann", "omni3",
+                     "mecanum", "wheels"}))
       .capture_default_str();
   add_positive(command, "--wheelbase", options.wheelbase,
                "Distance of the wheels on the left from those on the right [m]");
@@ -191,7 +191,7 @@ void check_drive_options(const Command& command, const SimulateOptions& options)
     throw UsageError(fmt::format("simulate: {} is not of drive {}, expected one of {}", option,
                                  options.drive, fmt::join(drives, ", ")));
   };
-  refuse_unless("--wheelbase", {"differential", "skid-steer", "mecanum"});
+  refuse_unless("--wheelbase", {"differential", "unicycle", "skid-steer", "mecanum"});
   refuse_unless("--length", {"tricycle", "ackermann", "omni3", "mecanum", "wheels"});
   refuse_unless("--wheel-left", {"ackermann"});
   refuse_unless("--steer-noise", {"tricycle", "ackermann"});

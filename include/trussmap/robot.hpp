@@ -28,6 +28,9 @@ struct WheelTravel {
 /// positive, mean over the row].
 ///
 ///   differential   w = left, right             f = (w1 + w2)/2, a = (w2 - w1)/wheelbase
+///   unicycle       w = travel [m], turn [rad]  f = w1, a = w2; or of travel alone, where a is what
+///                                              the gyro says. Noise, and what wears, are those of
+///                                              two wheels that are `wheelbase` apart
 ///   skid_steer     w = left ones, right ones   the same of their means; `wheelbase` is the
 ///                                              effective one
 ///   tricycle       w = of the steered wheel    f = w cos b, a = w sin b/length
@@ -40,7 +43,16 @@ struct WheelTravel {
 ///                  right, rear left, rear      s = (-w1 + w2 + w3 - w4)/4,
 ///                  right                       a = (-w1 + w2 - w3 + w4)/(2 (wheelbase + length))
 ///   wheels         w = any columns             (f, s, a) = matrix w
-enum class DriveKind { differential, skid_steer, tricycle, ackermann, omni3, mecanum, wheels };
+enum class DriveKind {
+  differential,
+  unicycle,
+  skid_steer,
+  tricycle,
+  ackermann,
+  omni3,
+  mecanum,
+  wheels
+};
 
 [[nodiscard]] std::string_view name_of(DriveKind drive);
 /// Throws std::invalid_argument, listing all names, where there is none of this name.
@@ -98,15 +110,18 @@ struct WheelColumn {
 /// steering effects and the gyro are taken in, once each. Forward and turn are held as what two
 /// wheels at the robot's wheelbase show of them (drive/body_motion.hpp).
 struct MotionRows : DriveColumns {
-  std::vector<double> left;         ///< m
-  std::vector<double> right;        ///< m
-  std::vector<double> sideways;     ///< m that the body moves to the left; empty = 0
-  std::vector<WheelColumn> wheels;  ///< the robot's own; empty of two wheels
-  std::vector<GyroShare> gyro;      ///< once it is taken in
+  std::vector<double> left;           ///< m
+  std::vector<double> right;          ///< m
+  std::vector<double> sideways;       ///< m that the body moves to the left; empty = 0
+  std::vector<WheelColumn> wheels;    ///< the robot's own; empty of two wheels, and of a unicycle
+  std::vector<std::string> unicycle;  ///< the columns of a unicycle; of others empty
+  std::vector<GyroShare> gyro;        ///< once it is taken in
   /// m ahead and rad that steering effects (effects/steering.hpp) have added; shapes see the drive
   /// without. Empty where none are taken in.
   std::vector<std::array<double, 2>> steered;
 
+  /// Whether `left` and `right` are two wheels, of which each can be wrong by itself.
+  [[nodiscard]] bool of_two_wheels() const { return wheels.empty() && unicycle.empty(); }
   /// The wheels' own travels, m.
   [[nodiscard]] double wheel_left(std::size_t row) const {
     return gyro.empty() ? left[row] : gyro[row].left;

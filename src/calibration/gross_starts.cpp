@@ -305,7 +305,7 @@ std::vector<GrossStart> starts_by_places(const std::vector<DrivenRecording>& rec
   const Disagreement disagreement(recordings, robot);
   if (!disagreement.tells()) return {};
   std::vector<Rated> kept;
-  const bool two_wheels = recordings.front().drive.wheels.empty();
+  const bool two_wheels = recordings.front().drive.of_two_wheels();
   const double as_stated = disagreement.of({});
   for (const Rated& one : rated_grid(disagreement, two_wheels)) {
     const bool near = std::any_of(kept.begin(), kept.end(), [&one](const Rated& other) {

@@ -84,6 +84,8 @@ std::vector<SoughtConstant> sought_constants(const Robot& robot) {
   switch (robot.drive) {
     case DriveKind::differential:
       return {diameters_constant(), turn_constant(), scale_constant()};
+    case DriveKind::unicycle:
+      return {turn_constant(), scale_constant()};
     case DriveKind::tricycle:
     case DriveKind::ackermann:
       return {steering_offset_constant(), turn_constant(), scale_constant(),

@@ -121,7 +121,7 @@ std::optional<GrossStart> start_by_turns(const std::vector<DrivenRecording>& rec
   double most = 0.0;
   for (const Turned& one : turns) most += std::abs(one.by[0]);
   if (turns.size() < kFewest || most < kTurning) return std::nullopt;
-  const bool two = recordings.front().drive.wheels.empty();
+  const bool two = recordings.front().drive.of_two_wheels();
   std::vector<int> columns{0};
   if (two) columns.push_back(1);
   const bool gyro =

@@ -239,7 +239,7 @@ void check_turns(Checked& checked, const Turns& turns, const SurveyAgreement& su
 void check_contradicted_wheels(Checked& checked, const TurnAgreement& turns,
                                const SurveyAgreement& surveyed, const TruthAgreement& truth) {
   const MotionRows& drive = checked.recording.drive;
-  const bool two = drive.wheels.empty();
+  const bool two = drive.of_two_wheels();
   if (two && (surveyed.contradicts || truth.contradicts)) {
     check_lone_wheel(checked, surveyed.contradicts, truth.contradicts);
   }

@@ -115,7 +115,7 @@ void check_drive_values(Checked& checked) {
   check_units(checked, rows);
   check_spikes(checked, rows);
   check_gaps(checked, {rows.duration, rows.speed(0.5)});
-  if (checked.recording.drive.wheels.empty()) check_still_wheels(checked);
+  if (checked.recording.drive.of_two_wheels()) check_still_wheels(checked);
 }
 
 }  // namespace trussmap

@@ -27,8 +27,9 @@ Wheels wheels_of(const MotionRows& drive, std::size_t row, WheelMistake mistake)
 }
 
 std::string wheel_columns(const MotionRows& drive) {
-  if (drive.wheels.empty()) return "left,right";
+  if (drive.of_two_wheels()) return "left,right";
   std::string names;
+  for (const std::string& one : drive.unicycle) names += (names.empty() ? "" : ",") + one;
   for (const WheelColumn& one : drive.wheels) names += (names.empty() ? "" : ",") + one.name;
   return names;
 }

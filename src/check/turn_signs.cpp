@@ -29,7 +29,7 @@ struct Blame {
 /// A robot that seems to drive backwards nearly all the time has its wheels negated, not exchanged.
 Blame blame_of_wheels(const MotionRows& drive, double forward) {
   const bool steered = !drive.wheels.empty() && drive.wheels.back().steers;
-  if (drive.wheels.empty()) {
+  if (drive.of_two_wheels()) {
     if (forward < kBackwards) {
       return {"drive.csv", "left,right", "wheels negated", "both wheels negated",
               "change the sign of left and right"};
@@ -38,10 +38,18 @@ Blame blame_of_wheels(const MotionRows& drive, double forward) {
             "exchange the columns left and right"};
   }
   const std::string columns = wheel_columns(drive);
+  const bool unicycle = !drive.unicycle.empty();
   if (forward < kBackwards) {
-    const std::string travels = steered ? drive.wheels.front().name : columns;
+    const std::string travels = steered    ? drive.wheels.front().name
+                                : unicycle ? drive.unicycle.front()
+                                           : columns;
     return {"drive.csv", travels, "wheels negated", "the wheels negated",
             "change the sign of " + travels};
+  }
+  if (unicycle) {
+    const std::string& name = drive.unicycle.back();
+    return {"drive.csv", name, "turn clockwise", "a turn that is positive to the right",
+            "change the sign of " + name};
   }
   if (steered) {
     const std::string& name = drive.wheels.back().name;

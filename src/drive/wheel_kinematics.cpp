@@ -19,8 +19,9 @@
 namespace trussmap {
 namespace {
 
-constexpr NamedValues<DriveKind, 7> kDriveNames{{
+constexpr NamedValues<DriveKind, 8> kDriveNames{{
     {DriveKind::differential, "differential"},
+    {DriveKind::unicycle, "unicycle"},
     {DriveKind::skid_steer, "skid-steer"},
     {DriveKind::tricycle, "tricycle"},
     {DriveKind::ackermann, "ackermann"},
@@ -113,6 +114,37 @@ void take_body(MotionRows& drive, std::size_t row, const Eigen::Vector3d& motion
   drive.left[row] = travel.left;
   drive.right[row] = travel.right;
   if (!drive.sideways.empty()) drive.sideways[row] = motion[1];
+}
+
+/// The turn of a unicycle that shows none: its gyro's, which is no further sensor then.
+std::vector<double> turn_of_gyro(const Observations& recording, MotionRows& drive) {
+  if (!drive.has_gyro()) {
+    refuse_drive(recording,
+                 "has no column yaw_rate, expected one: drive unicycle has one column, the travel");
+  }
+  std::vector<double> turn;
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    turn.push_back(drive.yaw_rate[row] * drive.duration(row));
+    if (std::isfinite(turn.back())) continue;
+    refuse_drive(recording, joined("has no yaw_rate at t = ", short_text(drive.t[row]),
+                                   " s, expected one in every row: it is how the robot turns"));
+  }
+  drive.yaw_rate.clear();
+  return turn;
+}
+
+void take_unicycle(std::vector<WheelColumn>& columns, const Robot& robot, DrivenRecording& taken) {
+  MotionRows& drive = taken.drive;
+  drive.unicycle = robot.columns;
+  if (columns.size() == 1) drive.unicycle.emplace_back("yaw_rate");
+  const std::vector<double>& travel = columns.front().reading;
+  const std::vector<double> turn =
+      columns.size() > 1 ? std::move(columns[1].reading) : turn_of_gyro(taken, drive);
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    const WheelTravel shown = wheel_travel({travel[row], 0.0, turn[row]}, robot);
+    drive.left.push_back(shown.left);
+    drive.right.push_back(shown.right);
+  }
 }
 
 std::size_t columns_of(const Robot& robot) {
@@ -214,6 +246,10 @@ DrivenRecording with_wheels(Recording recording, const Robot& robot) {
   if (robot.drive == DriveKind::differential || !named) {
     drive.left = named ? std::move(wheels[0].reading) : std::move(recording.drive.left);
     drive.right = named ? std::move(wheels[1].reading) : std::move(recording.drive.right);
+    return result;
+  }
+  if (robot.drive == DriveKind::unicycle) {
+    take_unicycle(wheels, robot, result);
     return result;
   }
   const WheelKinematics kinematics(robot);

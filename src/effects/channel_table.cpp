@@ -298,7 +298,8 @@ std::vector<ChannelRecord> single_records() {
 /// Whether the n-th of a drive's own wheels rolls; one that is steered has the channel wheels.
 template <std::size_t n>
 bool has_wheel(const Robot& robot) {
-  return !has_two_wheels(robot) && !has_steering(robot) && n < robot.columns.size();
+  return !has_two_wheels(robot) && robot.drive != DriveKind::unicycle && !has_steering(robot) &&
+         n < robot.columns.size();
 }
 
 template <std::size_t n>

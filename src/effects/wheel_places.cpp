@@ -48,6 +48,7 @@ std::vector<WheelPlace> wheel_places(const Robot& robot) {
               {front, -side, 0.0, 0.25 * pi},
               {-front, side, 0.0, 0.25 * pi},
               {-front, -side, 0.0, -0.25 * pi}};
+    case DriveKind::unicycle:
     case DriveKind::wheels:
       break;
   }

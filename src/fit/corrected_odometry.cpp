@@ -75,8 +75,11 @@ class RowAtHand {
   RowAtHand(Robot robot, const Noise& noise, bool gyro)
       : robot_(std::move(robot)), noise_(noise), gyro_(gyro) {
     if (!(robot_.wheelbase > 0.0)) refuse("the wheelbase must be above 0 m");
+    if (robot_.drive == DriveKind::unicycle && (columns() < 1 || columns() > 2)) {
+      refuse(joined("drive unicycle has ", columns(), " columns, expected 1 or 2"));
+    }
     drive_.left = drive_.right = {0.0};
-    if (robot_.drive == DriveKind::differential) return;
+    if (robot_.drive == DriveKind::differential || robot_.drive == DriveKind::unicycle) return;
     kinematics_.emplace(robot_);
     kinematics_->prepare(drive_, 1);
   }
@@ -88,16 +91,19 @@ class RowAtHand {
     if (!std::isfinite(row.left) || !std::isfinite(row.right)) {
       refuse("a row's travel is not finite");
     }
-    if (row.readings.size() != drive_.wheels.size()) {
+    if (row.readings.size() != columns()) {
       refuse(joined("a row has readings of ", row.readings.size(), " wheels, expected ",
                     expected_readings()));
     }
-    if (kinematics_ && (row.left != 0.0 || row.right != 0.0)) {
+    if (columns() > 0 && (row.left != 0.0 || row.right != 0.0)) {
       refuse("a row has travels left and right, expected readings of " + expected_readings());
+    }
+    if (turns_by_gyro() && std::isnan(row.yaw_rate)) {
+      refuse("a row has no yaw rate, expected one: it is how the robot turns");
     }
     for (std::size_t k = 0; k < row.readings.size(); ++k) {
       if (is_possible_reading(row.readings[k])) continue;
-      refuse(joined("column ", drive_.wheels[k].name, " reads ", short_text(row.readings[k]),
+      refuse(joined("column ", robot_.columns[k], " reads ", short_text(row.readings[k]),
                     ", expected a travel in metres or an angle in radians"));
     }
   }
@@ -105,8 +111,10 @@ class RowAtHand {
   /// The row as it is read, what the gyro adds to it.
   GyroShare take(const WheelRow& row) {
     if (!kinematics_) {
-      drive_.left.front() = row.left;
-      drive_.right.front() = row.right;
+      const WheelTravel shown =
+          columns() > 0 ? unicycle_travel(row) : WheelTravel{row.left, row.right};
+      drive_.left.front() = shown.left;
+      drive_.right.front() = shown.right;
       return share_of(row);
     }
     for (std::size_t k = 0; k < row.readings.size(); ++k) {
@@ -171,8 +179,24 @@ class RowAtHand {
   [[nodiscard]] const Noise& noise() const { return noise_; }
 
  private:
+  /// Of two wheels none: they are left and right.
+  [[nodiscard]] std::size_t columns() const {
+    return robot_.drive == DriveKind::differential ? 0 : robot_.columns.size();
+  }
+
+  /// Where travel is a unicycle's one column, the gyro says how it turns, and is no further sensor.
+  [[nodiscard]] bool turns_by_gyro() const {
+    return robot_.drive == DriveKind::unicycle && columns() == 1;
+  }
+
+  [[nodiscard]] WheelTravel unicycle_travel(const WheelRow& row) const {
+    const double turn = turns_by_gyro() ? row.yaw_rate * row.duration : row.readings[1];
+    return wheel_travel({row.readings[0], 0.0, turn}, robot_);
+  }
+
   [[nodiscard]] GyroShare share_of(const WheelRow& row) const {
-    return gyro_share(drive_, 0, row.yaw_rate, row.duration, robot_, noise_);
+    const double beside = turns_by_gyro() ? kAbsent : row.yaw_rate;
+    return gyro_share(drive_, 0, beside, row.duration, robot_, noise_);
   }
 
   /// Nothing of two wheels without a gyro: then that of the wheels.
@@ -186,9 +210,9 @@ class RowAtHand {
   }
 
   [[nodiscard]] std::string expected_readings() const {
-    if (!kinematics_) return "none of two wheels, but left and right";
+    if (columns() == 0) return "none of two wheels, but left and right";
     std::string names;
-    for (const WheelColumn& one : drive_.wheels) names += (names.empty() ? "" : ", ") + one.name;
+    for (const std::string& one : robot_.columns) names += (names.empty() ? "" : ", ") + one;
     return names;
   }
 

@@ -26,6 +26,7 @@ struct DriveKeys {
 const DriveKeys& keys_of(DriveKind drive) {
   static const std::map<DriveKind, DriveKeys> all{
       {DriveKind::differential, {{"wheelbase", "columns"}, {}, 2, {}}},
+      {DriveKind::unicycle, {{"wheelbase", "columns"}, {}, 2, {"travel", "turn"}}},
       {DriveKind::skid_steer, {{"wheelbase", "columns"}, {"wheelbase"}, 2, {"left", "right"}}},
       {DriveKind::tricycle, {{"length", "columns"}, {"length"}, 2, {"wheel", "steer"}}},
       {DriveKind::ackermann,
@@ -131,14 +132,16 @@ void finish_robot(const toml::table& robot, const DriveKeys& keys, Robot& result
     } else {
       result.matrix = told(robot, "", [&] { return wheel_matrix(result.places); });
     }
-  } else if (result.drive == DriveKind::skid_steer
-                 ? count != 2 && count != 4 && count != 6
+  } else if (result.drive == DriveKind::skid_steer ? count != 2 && count != 4 && count != 6
+             : result.drive == DriveKind::unicycle
+                 ? count != 1 && count != 2
                  : !result.columns.empty() && count != keys.columns_wanted) {
     refuse(robot.source(),
-           fmt::format("drive {} has {} columns, expected {}", name_of(result.drive), count,
-                       result.drive == DriveKind::skid_steer
-                           ? "2, 4 or 6, those of the left side first"
-                           : std::to_string(keys.columns_wanted)));
+           fmt::format(
+               "drive {} has {} columns, expected {}", name_of(result.drive), count,
+               result.drive == DriveKind::skid_steer ? "2, 4 or 6, those of the left side first"
+               : result.drive == DriveKind::unicycle ? "travel and turn, or travel beside a gyro"
+                                                     : std::to_string(keys.columns_wanted)));
   }
   if (keys.names.find("wheelbase") != keys.names.end()) return;
   // Of no meaning then but for how turns are written as travels of two wheels.

@@ -64,6 +64,8 @@ void check_wheels(const Robot& robot) {
   switch (robot.drive) {
     case DriveKind::differential:
       return;
+    case DriveKind::unicycle:
+      return wants(false, 2);
     case DriveKind::skid_steer:
       return require(
           columns == 2 || columns == 4 || columns == 6,

@@ -22,6 +22,7 @@ double usual_length(DriveKind drive) {
     case DriveKind::wheels:
       return 0.2;
     case DriveKind::differential:
+    case DriveKind::unicycle:
     case DriveKind::skid_steer:
       break;
   }
@@ -32,6 +33,8 @@ std::vector<std::string> usual_columns(DriveKind drive) {
   switch (drive) {
     case DriveKind::differential:
       break;
+    case DriveKind::unicycle:
+      return {"travel", "turn"};
     case DriveKind::skid_steer:
       return {"front_left", "rear_left", "front_right", "rear_right"};
     case DriveKind::tricycle:
@@ -55,8 +58,8 @@ Robot usual_robot(DriveKind drive, double wheelbase, double length) {
   robot.columns = usual_columns(drive);
   robot.length = length > 0.0 ? length : usual_length(drive);
   if (wheelbase > 0.0) robot.wheelbase = wheelbase;
-  const bool has_wheelbase = drive == DriveKind::differential || drive == DriveKind::skid_steer ||
-                             drive == DriveKind::mecanum;
+  const bool has_wheelbase = drive == DriveKind::differential || drive == DriveKind::unicycle ||
+                             drive == DriveKind::skid_steer || drive == DriveKind::mecanum;
   if (drive == DriveKind::wheels) {
     // Front left, front right, rear left, rear right.
     const double radius = robot.length;

@@ -97,10 +97,29 @@ std::vector<std::vector<double>> record_wheels(const TrueMotion& motion, const W
   return columns;
 }
 
+/// A unicycle's wheels are two, of which it shows what they do together.
+WheeledRobot on_its_wheels(WheeledRobot robot) {
+  if (robot.geometry.drive == DriveKind::unicycle) robot.geometry.drive = DriveKind::differential;
+  return robot;
+}
+
+void show_together(std::vector<std::vector<double>>& columns, double wheelbase) {
+  for (std::size_t row = 0; row < columns[0].size(); ++row) {
+    const double left = columns[0][row];
+    const double right = columns[1][row];
+    columns[0][row] = 0.5 * (left + right);
+    columns[1][row] = (right - left) / wheelbase;
+  }
+}
+
 Drive record_drive(const TrueMotion& motion, const WheeledRobot& robot, std::uint64_t seed,
                    const ChannelGains& gains) {
-  SensorErrors errors(robot, seed);
-  std::vector<std::vector<double>> columns = record_wheels(motion, robot, seed, gains, errors);
+  const WheeledRobot wheels = on_its_wheels(robot);
+  SensorErrors errors(wheels, seed);
+  std::vector<std::vector<double>> columns = record_wheels(motion, wheels, seed, gains, errors);
+  if (robot.geometry.drive == DriveKind::unicycle) {
+    show_together(columns, robot.geometry.wheelbase);
+  }
   Dice gyro(seed, Stream::gyro);
   double bias = 0.0;  // rad/s
   Drive drive;

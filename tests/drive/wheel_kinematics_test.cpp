@@ -162,6 +162,33 @@ TEST(WheelColumns, TwoNamedWheelsAreADifferentialDrive) {
   EXPECT_TRUE(drive.wheels.empty());
 }
 
+Robot unicycle(const std::vector<std::string>& columns) {
+  Robot robot;
+  robot.drive = DriveKind::unicycle;
+  robot.columns = columns;
+  return robot;
+}
+
+TEST(Unicycle, MovesAsItsColumnsSay) {
+  const Robot robot = unicycle({"v", "w"});
+  const Recording recording = recording_of({"v", "w"}, {{0.1, -0.2, 0.0}, {0.3, 0.0, -2.0}});
+  expect_motion(with_wheels(recording, robot).drive,
+                {{0.1, 0.0, 0.3}, {-0.2, 0.0, 0.0}, {0.0, 0.0, -2.0}}, robot);
+}
+
+TEST(Unicycle, OfTravelAloneTurnsByItsGyro) {
+  const Robot robot = unicycle({"v"});
+  Recording recording = recording_of({"v"}, {{0.1, 0.2, 0.0}});
+  EXPECT_THROW((void)with_wheels(recording, robot), InputError);  // no gyro
+  recording.drive.yaw_rate = {0.5, -0.25, 1.0};
+  const double dt = recording.drive.duration(0);
+  const MotionRows drive = with_wheels(recording, robot).drive;
+  expect_motion(drive, {{0.1, 0.0, 0.5 * dt}, {0.2, 0.0, -0.25 * dt}, {0.0, 0.0, dt}}, robot);
+  EXPECT_FALSE(drive.has_gyro());  // it is no sensor beside the wheels
+  recording.drive.yaw_rate[1] = kAbsent;
+  EXPECT_THROW((void)with_wheels(recording, robot), InputError);
+}
+
 std::string refusal(const Recording& recording, const Robot& robot) {
   try {
     static_cast<void>(with_wheels(recording, robot));

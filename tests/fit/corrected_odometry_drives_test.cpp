@@ -26,8 +26,9 @@ using testing::other_drive;
 using testing::OtherDrive;
 using testing::own_effect;
 
-constexpr DriveKind kDrives[] = {DriveKind::skid_steer, DriveKind::tricycle, DriveKind::ackermann,
-                                 DriveKind::omni3,      DriveKind::mecanum,  DriveKind::wheels};
+constexpr DriveKind kDrives[] = {DriveKind::unicycle,  DriveKind::skid_steer, DriveKind::tricycle,
+                                 DriveKind::ackermann, DriveKind::omni3,      DriveKind::mecanum,
+                                 DriveKind::wheels};
 
 struct Sensors {
   bool compass = false;
@@ -64,7 +65,10 @@ CorrectedRow drive_row(CorrectedOdometry& odometry, const MotionRows& drive, std
   WheelRow now{drive.duration(row)};
   if (drive.has_compass()) now.compass = drive.heading[row];
   if (drive.has_gyro()) now.yaw_rate = drive.yaw_rate[row];
-  for (const WheelColumn& one : drive.wheels) now.readings.push_back(one.reading[row]);
+  const std::size_t columns = std::max(drive.wheels.size(), drive.unicycle.size());
+  for (std::size_t k = 0; k < columns; ++k) {
+    now.readings.push_back(drive.covariates[k].values[row]);
+  }
   std::vector<double> covariates;
   for (const Covariate& one : drive.covariates) covariates.push_back(one.values[row]);
   return odometry.drive(now, covariates);
@@ -205,6 +209,7 @@ TEST(CorrectedOdometryOfDrives, RobotsWithoutTheirColumnsOrLengthsAreRefused) {
     Model model = other_drive(kind).model;
     EXPECT_NO_THROW(CorrectedOdometry{model});
     model.robot.columns.pop_back();
+    if (kind == DriveKind::unicycle) model.robot.columns.clear();  // one would do
     EXPECT_THROW(CorrectedOdometry{model}, std::invalid_argument);
     model = other_drive(kind).model;
     model.robot.wheelbase = 0.0;

@@ -54,6 +54,8 @@ TEST_P(OtherDrives, NoiseFreeEffectsAreFoundAndLeaveNothing) {
   }
 }
 
+INSTANTIATE_TEST_SUITE_P(Unicycle, OtherDrives, ::testing::Values(DriveKind::unicycle));
+
 INSTANTIATE_TEST_SUITE_P(Drives, OtherDrives, ::testing::ValuesIn(kDrives), [](const auto& one) {
   std::string name(name_of(one.param));
   std::erase(name, '-');
@@ -217,6 +219,24 @@ TEST(OtherDrivesCalibration, FindsEachDrivesConstants) {
       EXPECT_LT(one.g.sd, 0.01);
     }
   }
+}
+
+/// A unicycle has no wheels that could differ: the scale of its travel, and that of its turns.
+TEST(OtherDrivesCalibration, FindsAUnicyclesScales) {
+  std::mt19937_64 random(37);
+  OtherDrive drive = other_drive(DriveKind::unicycle);
+  drive.model.noise.left = drive.model.noise.right = 0.002;
+  const testing::Wheels shown = [](const Twist& row) {
+    return std::vector<double>{row.f / 1.04, row.a / 0.9};
+  };
+  const WheelCalibration found =
+      calibrate_wheels({driven_by(drive, noisy(drive, shown, random))}, drive.model);
+  ASSERT_EQ(found.constants.size(), 2U);
+  // Turns are scaled by both, travel by the scale alone.
+  EXPECT_EQ(found.constants[0].channel, Channel::turn);
+  EXPECT_NEAR(found.constants[0].g.value, 0.9 - 1.04, 4.0 * found.constants[0].g.sd);
+  EXPECT_NEAR(found.constants[1].g.value, 0.04, 4.0 * found.constants[1].g.sd);
+  EXPECT_LT(found.constants[0].g.sd + found.constants[1].g.sd, 0.02);
 }
 
 /// A stated gain that is a sixth of the true one is no start for least squares.

@@ -146,9 +146,9 @@ TEST(SimulatedIncrements, AreThoseOfTheMatrix) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Drives, SimulatedDrives,
-                         ::testing::Values(DriveKind::skid_steer, DriveKind::tricycle,
-                                           DriveKind::ackermann, DriveKind::omni3,
-                                           DriveKind::mecanum, DriveKind::wheels),
+                         ::testing::Values(DriveKind::unicycle, DriveKind::skid_steer,
+                                           DriveKind::tricycle, DriveKind::ackermann,
+                                           DriveKind::omni3, DriveKind::mecanum, DriveKind::wheels),
                          [](const auto& one) {
                            std::string name(name_of(one.param));
                            std::erase(name, '-');

@@ -264,7 +264,12 @@ Bag format_recording_bag(const Recording& recording, const Model& model,
     throw std::invalid_argument("the wheel radius must be above 0");
   }
   const DrivenRecording taken = with_wheels(recording, model.robot);
-  return RecordingBag(taken, model, options).run();
+  Model as_written = model;
+  if (!taken.drive.unicycle.empty()) {  // the joints are those of two wheels that show the same
+    as_written.robot.drive = DriveKind::differential;
+    as_written.robot.columns.clear();
+  }
+  return RecordingBag(taken, as_written, options).run();
 }
 
 }  // namespace trussmap
