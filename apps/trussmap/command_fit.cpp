@@ -130,7 +130,7 @@ void setup_fit(const Command& app) {
   command.add_option("--out", options->out, "Write the model with its coefficients (TOML)")
       .type_name("FILE");
   command.add_flag("--noise", options->noise,
-                   "Estimate the noise, too: the size of every source, and which of it lasts");
+                   "Estimate the noise, too: the size of every source, and which part of it lasts");
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
   command.footer(

@@ -28,7 +28,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kAxes = "axes";  // a note of the store: whose axes its map has
+constexpr const char* kAxes = "axes";  // a note of the store: in which frame its map is
 
 std::string option_of(Method method) {
   std::string name = name_of(method);
@@ -56,7 +56,7 @@ MapStore opened(const StoreSessions& options) {
   }
 }
 
-/// The first session says whose axes the map has.
+/// The first session says in which frame the map is.
 MapAxes axes_of(MapStore& store, const DrivenRecording& recording) {
   if (store.builder().landmarks() == 0) {
     store.set_note(kAxes, recording.drive.has_compass() ? "compass" : "landmarks");

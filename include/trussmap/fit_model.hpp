@@ -100,8 +100,8 @@ struct ModelFit {
 // Day after day. A session that has been fitted enters the next fit as what it says of landmarks
 // and coefficients, its path eliminated: the quadratic of its own least squares there, with all
 // second derivatives. Adding a day costs a day, a few factorisations of the sum, and a step of each
-// session that is taken anew, from the rows that are kept of it, for the map has moved so far from
-// where its quadratic was taken that it would matter.
+// session that is linearised again, from the rows that are kept of it, for the map has moved so far
+// from where its quadratic was taken that it would matter.
 //
 //   SummarisedFit fit(model);
 //   for (const Recording& day : days) fit.add(day);
@@ -132,8 +132,8 @@ class SummarisedFit {
   SummarisedFit(SummarisedFit&&) noexcept;
   SummarisedFit& operator=(SummarisedFit&&) noexcept;
 
-  /// Takes a session in, or where it throws leaves all as it was. The first one lays the frame, and
-  /// has to show every coefficient. Throws as fit_model does, InputError where no landmark was
+  /// Takes a session in, or where it throws leaves all as it was. The first one defines the datum,
+  /// and has to show every coefficient. Throws as fit_model does, InputError where no landmark was
   /// sighted, SolveError where a further session is not tied to the map by two places or by one and
   /// a direction, or brings what gives a position or a direction (truth, fixes, compass, surveyed
   /// landmarks) to a map whose first session had none.

@@ -17,7 +17,7 @@
 //
 // The file is an SQLite database (write-ahead log, synchronous in full), and no program but one
 // writes it at a time, which holds a lock on the file NAME-lock; others may read meanwhile. Who
-// reads needs the right to write in its folder, unless the store was closed in peace. Its tables:
+// reads needs the right to write in its folder, unless the store was closed cleanly. Its tables:
 //
 //   map        landmark, x, y                                     where the landmarks are now, m
 //   routes     source, target (numbers of landmarks), traversals, stretch, orientation, dx, dy,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// How large the noise is, which of it lasts, and what it costs: estimated from the recordings that
-// a model was fitted to.
+// How large the noise is, which part of it lasts, and what it costs: estimated from the recordings
+// that a model was fitted to.
 //
 //   ModelFit --fit_noise--> FittedNoise: the same model's noise, with sizes and lengths as found
 //

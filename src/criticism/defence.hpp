@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// What a diagnosis has found has to stand against noise that lasts.
+// What a diagnosis has found is tested against noise that lasts.
 //
 //   effect found --> noise estimated without it --> which process would stand for it?
 //       of its own sensor       effect_or_process.hpp, against the sensor's effects alone

@@ -258,7 +258,7 @@ class RobustDescent {
   void weigh(double mu) {
     for (std::size_t k = 0; k < fit_.weights.size(); ++k) {
       if (!may_be_wrong(problem_.measurements[k])) continue;
-      fit_.weights[k] = bent_weight(system_.squared_errors()[k], fit_.gate, mu);
+      fit_.weights[k] = gnc_weight(system_.squared_errors()[k], fit_.gate, mu);
     }
     keep_one_per_landmark(problem_, system_.squared_errors(), fit_.weights);
     system_.set_weights(fit_.weights);

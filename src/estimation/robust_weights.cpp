@@ -10,7 +10,7 @@ double soft_weight(double squared_error, double gate) {
   return std::pow(gate / (squared_error + gate), 2);
 }
 
-double bent_weight(double squared_error, double gate, double mu) {
+double gnc_weight(double squared_error, double gate, double mu) {
   if (squared_error <= mu / (mu + 1.0) * gate) return 1.0;
   if (squared_error >= (mu + 1.0) / mu * gate) return 0.0;
   return std::sqrt(gate * mu * (mu + 1.0) / squared_error) - mu;

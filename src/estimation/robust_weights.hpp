@@ -21,7 +21,7 @@ namespace trussmap {
 [[nodiscard]] double soft_weight(double squared_error, double gate);
 
 /// Of the truncated square bent by mu (Yang et al., eq. 14).
-[[nodiscard]] double bent_weight(double squared_error, double gate, double mu);
+[[nodiscard]] double gnc_weight(double squared_error, double gate, double mu);
 
 /// The mu to begin with where this is the largest r^2, above c^2/2 (Yang et al., remark 5): no
 /// error is out yet.

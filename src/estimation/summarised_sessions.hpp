@@ -2,32 +2,32 @@
 // SPDX-License-Identifier: MIT
 //
 // The fit of many sessions, each of them but a quadratic (session_summary.hpp): a further one costs
-// what it costs itself, a few factorisations of the sum, and those that are taken anew.
+// what it costs itself, a few factorisations of the sum, and those that are relinearised.
 //
 //   x        all landmarks, orientations and coefficients
 //   Phi(x)   sum of phi_s(x) over the sessions + survey + priors of the coefficients
 //
 //   add      the new session's rows are taken at x; the sum's minimum is the next x, at which what
-//            moved is taken anew:
+//            moved is relinearised:
 //
 //     x <- x - H^-1 G(x)          H, G the sums of the summaries
 //     session s was taken at x_s, and its summary misses its gradient at x by about
 //         e_s (q/q_s),   q = (x - x_s)' diag(H_s) (x - x_s)
 //     of which e_s, q_s are known from a trial, a move drawn from x's own uncertainty at which the
-//     session's gradient is reckoned exactly, or from the last time that it was taken anew, where
+//     session's gradient is reckoned exactly, or from the last time that it was relinearised, where
 //     that was worse. Sessions whose H^-1 e_s (q/q_s) add up to more than the tolerance are taken
 //     anew at x, the largest first, until the rest is below it.
 //
 // So the result is that of the adjustment of all sessions at once (recording_adjustment.hpp) to
 // about the tolerance. What a summary misses goes with the square of the move, so how far the map
-// may move before old sessions are taken anew goes with the root of the tolerance: of a map good to
-// 2 mm most are at every add for 1e-8 m, hardly any for 1e-7 m.
+// may move before old sessions are relinearised goes with the root of the tolerance: of a map good
+// to 2 mm most are at every add for 1e-8 m, hardly any for 1e-7 m.
 //
 // The frame is the first session's: where nothing measures a position its first landmark is held,
 // and where nothing measures a direction the coordinate that turning the map (about that landmark,
 // or the place that is known) moves most. (Held by a heading, as a fit of all at once is, the map
 // would turn by far more than it changes its shape, and nothing but that would have every session
-// taken anew.)
+// relinearised.)
 #pragma once
 
 #include "estimation/session_summary.hpp"
@@ -89,7 +89,7 @@ class SummarisedSessions {
   /// Of each landmark alone, m^2; zero where held.
   [[nodiscard]] std::vector<Matrix2> landmark_covariances() const;
   [[nodiscard]] Eigen::MatrixXd coefficient_covariance() const;
-  /// How often a session was taken anew by the last add, the new one's own times apart.
+  /// How often a session was relinearised by the last add, the new one's own times apart.
   [[nodiscard]] int taken_anew() const { return sum_.taken_anew; }
   /// Largest difference that one exact step from here would make: what is really left. Takes every
   /// session's gradient: for checks.
@@ -102,7 +102,7 @@ class SummarisedSessions {
     std::vector<Eigen::Index> at;  ///< in x, of each of its shared unknowns
     Eigen::VectorXd missed;        ///< by a trial move, of the gradient
     double trial = 0.0;            ///< the move's q
-    /// What it was before the session that is being added, where it has been taken anew since.
+    /// What it was before the session that is being added, where it has been relinearised since.
     struct Before {
       SessionSummary::Taken taken;
       Eigen::VectorXd missed;

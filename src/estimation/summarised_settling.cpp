@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// To the minimum of the sum, and which sessions are taken anew on the way.
+// To the minimum of the sum, and which sessions are relinearised on the way.
 #include "estimation/summarised_sessions.hpp"
 #include "geometry/index.hpp"
 #include "trussmap/error.hpp"
@@ -14,7 +14,7 @@
 namespace trussmap {
 namespace {
 
-constexpr double kFresh = 1e-6;  // m, rad: a new session's move from which it is taken anew
+constexpr double kFresh = 1e-6;  // m, rad: a new session's move from which it is relinearised
 constexpr int kMostRounds = 50;
 constexpr double kTrial = 0.1;   // standard deviations that a trial moves
 constexpr double kSafety = 1.5;  // a trial's direction is one of many
@@ -155,7 +155,7 @@ bool SummarisedSessions::take_wholly() {
 void SummarisedSessions::settle() {
   Member& fresh = sessions_.back();
   double safety = kSafety;
-  double thought = 0.0;  // effects of those just taken anew
+  double thought = 0.0;  // effects of those just relinearised
   for (int round = 0; round < kMostRounds; ++round) {
     const Eigen::VectorXd change = step(safe_factor());
     sum_.x += change;
@@ -170,7 +170,8 @@ void SummarisedSessions::settle() {
       continue;
     }
     if (fresh.trial == 0.0) try_out(fresh, H);
-    // What sessions taken anew have turned out to miss says how far thoughts of the others are off.
+    // What sessions relinearised have turned out to miss says how far thoughts of the others are
+    // off.
     if (thought > 0.0) safety = std::max(safety, kMargin * largest(change) / thought);
     const std::vector<double> effects = effects_of_moves(H);
     const std::vector<std::size_t> again = worth_taking_anew(effects, safety);

@@ -40,7 +40,7 @@ class Graduation {
     const auto weigh = [&](double mu) {
       bool graded = false;
       for (const std::size_t k : closures_) {
-        weights[k] = bent_weight(square(k, estimates), gate_, mu);
+        weights[k] = gnc_weight(square(k, estimates), gate_, mu);
         graded = graded || (weights[k] > 0.0 && weights[k] < 1.0);
       }
       system_.set_weights(weights);

@@ -22,7 +22,7 @@ constexpr const char* kBody = R"html(<header id="head">
 <div class="acts">
 <button type="button" id="undo" disabled>Undo</button>
 <button type="button" id="redo" disabled>Redo</button>
-<span class="takes">Take along:
+<span class="takes">Export:
 <a href="export/model.toml" download>model.toml</a>
 <a href="export/commands.sh" download>commands</a>
 <a href="export/odometry.cpp" download>C++</a>

@@ -32,7 +32,7 @@ TEST(RobustWeights, BentWeightIsTheBestForItsPenalty) {
   for (const double mu : {0.05, 0.7, 1.0, 30.0}) {
     const auto penalty = [mu](double w) { return kGate * mu * (1.0 - w) / (mu + w); };
     for (const double squared_error : {0.1, 4.0, 8.9, 9.1, 12.0, 400.0}) {
-      EXPECT_NEAR(bent_weight(squared_error, kGate, mu), best_weight(squared_error, penalty), 1e-5)
+      EXPECT_NEAR(gnc_weight(squared_error, kGate, mu), best_weight(squared_error, penalty), 1e-5)
           << "r^2 = " << squared_error << ", mu = " << mu;
     }
   }
@@ -50,8 +50,8 @@ TEST(RobustWeights, NothingIsOutAtTheFirstBend) {
   constexpr double kGate = 16.0;
   for (const double largest : {17.0, 100.0, 1e6}) {
     const double mu = first_bend(largest, kGate);
-    EXPECT_GT(bent_weight(largest, kGate, mu), 0.0);
-    EXPECT_LT(bent_weight(largest, kGate, mu), 1.0);
+    EXPECT_GT(gnc_weight(largest, kGate, mu), 0.0);
+    EXPECT_LT(gnc_weight(largest, kGate, mu), 1.0);
   }
 }
 

@@ -146,7 +146,7 @@ function showSliders(target, values) {
   snap.addEventListener('change', () => { snaps = snap.checked; });
   by('sliders').replaceChildren(
       ...parameters.map((one, k) => sliderOf(target, one, k, values)),
-      ...(parameters.length ? [make('label', {className: 'snap'}, snap, ' let go, snap to the best fit near')] : []));
+      ...(parameters.length ? [make('label', {className: 'snap'}, snap, ' snap to the best fit nearby')] : []));
 }
 
 /** @param {string} label @param {Card[]} cards */
