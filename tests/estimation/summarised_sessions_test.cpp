@@ -290,7 +290,7 @@ TEST(SummarisedSessions, KnowAPlaceOnce) {
 TEST(SummarisedSessions, InAnotherOrderAreTheSame) {
   Days days = days_of({true, false, false, 1}, 5, true, 41);
   const SummarisedSessions map = summarised(days);
-  std::reverse(days.recordings.begin() + 1, days.recordings.end());  // the first lays the frame
+  std::reverse(days.recordings.begin() + 1, days.recordings.end());  // the first defines the datum
   const SummarisedSessions other = summarised(days);
   EXPECT_LT((map.coefficients() - other.coefficients()).cwiseAbs().maxCoeff(), 2e-8);
   for (int k = 0; k < static_cast<int>(map.landmarks().size()); ++k) {
