@@ -91,6 +91,8 @@ enum class Mood { good, doubt, bad };
 /// A line per coefficient, under a heading.
 [[nodiscard]] std::string effects_text(const std::vector<Effect>& effects,
                                        TextStyle style = TextStyle::plain);
+/// What acts beside what a model says of it, in the same words and units, and the score.
+[[nodiscard]] std::string score_text(const AnswerScore& score, TextStyle style = TextStyle::plain);
 /// `folder`: where it was written; empty: nowhere. Hidden effects are not named.
 [[nodiscard]] std::string simulation_text(const SimulatedRecording& simulated,
                                           const SimulationSettings& settings,
