@@ -102,7 +102,8 @@ std::vector<StraightRun> straight_runs(const std::string& text) {
                           length_of(one.substr(std::min(colon + 1, one.size())), text)};
     if (run.measured > kFarOff * run.reported || run.reported > kFarOff * run.measured) {
       throw UsageError("--straight " + one +
-                       ": the lengths differ by half and more, expected metres for both");
+                       ": the lengths differ by half and more, expected metres for both (is one in "
+                       "centimetres, 100 times too long?)");
     }
     runs.push_back(run);
     begin = comma + 1;
@@ -270,7 +271,7 @@ void setup_umbmark(const Command& app) {
       .group("Rehearsal with a simulated robot");
   command.footer(std::string(kSquareFooter) + kWallHelp);
   command.callback([options, command] {
-    check_source(command, !options->files.empty());
+    check_source(command, options->tape, !options->files.empty());
     if (options->tape.simulate && !options->straight.empty()) {
       throw UsageError("--straight is given with --simulate, expected --true-E-s");
     }

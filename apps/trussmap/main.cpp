@@ -106,6 +106,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_reveal(commands);
   trussmap::app::setup_serve(commands);
   trussmap::app::setup_simulate(commands);
+  trussmap::app::setup_tape(commands);
   trussmap::app::setup_tour(commands);
   trussmap::app::setup_umbmark(commands);
   trussmap::app::add_read_limits(app);

@@ -115,9 +115,16 @@ struct TestedDrives {
 /// Of the last round, with the systematic error of each.
 [[nodiscard]] std::string square_text(const std::vector<SquareRound>& rounds, SquareMethod method,
                                       TextStyle style = TextStyle::plain);
+/// "worth correcting", "nothing left to correct", or "doubtful": there are doubts.
+[[nodiscard]] std::string_view square_verdict(const SquareRound& round);
 /// What other paths, driven alone, would have hidden; "" without any.
 [[nodiscard]] std::string paths_alone_text(const std::vector<PathAlone>& paths,
                                            TextStyle style = TextStyle::plain);
+/// `constants`: taped_constants of the model that the robot calculated with.
+[[nodiscard]] std::string tape_text(const TapeCalibration& found,
+                                    const std::vector<TapedConstant>& constants,
+                                    TextStyle style = TextStyle::plain);
+[[nodiscard]] std::string_view name_of(TapeVerdict verdict);  ///< "worth correcting"
 [[nodiscard]] std::string wheel_noise_text(const NoiseAnalysis& result,
                                            TextStyle style = TextStyle::plain);
 
