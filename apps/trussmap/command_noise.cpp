@@ -228,7 +228,7 @@ void setup_noise(const Command& app) {
   add_tape_options(command, options->tape);
   command.footer(std::string(kFooter) + kWallHelp);
   command.callback([options, command] {
-    check_source(command, !options->file.empty());
+    check_source(command, options->tape, !options->file.empty());
     run_noise(*options);
   });
 }

@@ -1,15 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// trussmap reveal: what simulate --hide has hidden.
+// trussmap reveal: what simulate --hide has hidden, and how near a model comes to it.
 #include "commands.hpp"
 #include "effect_options.hpp"
+#include "json_values.hpp"
+#include "model_recordings.hpp"
 #include "sealed_answer.hpp"
 #include "terminal.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/fit_model.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/simulated_recording.hpp"
 #include "trussmap/texts.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include <fmt/format.h>
@@ -18,16 +25,78 @@
 namespace trussmap::app {
 namespace {
 
+using nlohmann::ordered_json;
+
 struct RevealOptions {
   std::string folder;
+  std::string model;
   std::string json;
 };
 
+/// A model and how sure its coefficients are by this recording.
+struct Estimated {
+  std::vector<Effect> effects;
+  std::vector<std::vector<double>> sd;
+  std::string note;  ///< why there is no standard error
+};
+
+Estimated estimated(const RevealOptions& options) {
+  ModelRecordingsOptions input;
+  input.recordings = {options.folder};
+  input.model = options.model;
+  const ModelRecordings read = read_model_recordings(input);
+  Estimated result;
+  result.effects = read.model.effects;
+  if (result.effects.empty()) return result;
+  try {
+    const ModelFit fit = fit_model(read.recordings, read.model, fit_options(input));
+    for (std::size_t k = 0; k < fit.effects.size(); ++k) {
+      result.sd.push_back(fit.effects[k].sd);
+      if (result.effects[k].coefficients.empty()) result.effects[k] = fit.effects[k].effect;
+    }
+  } catch (const std::invalid_argument& error) {
+    throw InputError(options.model, 0, error.what());
+  } catch (const SolveError& error) {
+    result.sd.clear();
+    result.note =
+        fmt::format("no z: the model cannot be fitted to {} ({})", options.folder, error.what());
+  }
+  return result;
+}
+
+ordered_json json_of(const AnswerScore& score) {
+  ordered_json out = {{"found", score.found},
+                      {"missed", score.missed},
+                      {"false", score.false_alarms},
+                      {"effects", ordered_json::array()}};
+  for (const ScoredEffect& row : score.effects) {
+    ordered_json one = effect_json(row.truth ? *row.truth : *row.estimate);
+    one["outcome"] = row.outcome == ScoredEffect::Outcome::found    ? "found"
+                     : row.outcome == ScoredEffect::Outcome::missed ? "missed"
+                                                                    : "false";
+    one["truth"] = row.truth ? ordered_json(row.truth->coefficients) : ordered_json();
+    one["estimate"] = row.estimate ? ordered_json(row.estimate->coefficients) : ordered_json();
+    one["sd"] = numbers_or_null(row.sd);
+    one["z"] = numbers_or_null(row.z);
+    out["effects"].push_back(std::move(one));
+  }
+  return out;
+}
+
 void run_reveal(const RevealOptions& options) {
-  const nlohmann::ordered_json answer = opened(options.folder);
+  ordered_json answer = opened(options.folder);
+  const std::vector<Effect> truth = effects_from(answer.at("effects"));
+  std::string text = fmt::format("revealed: what is hidden in {}\n\n{}", options.folder,
+                                 effects_text(truth, style_of(stdout)));
+  if (!options.model.empty()) {
+    const Estimated model = estimated(options);
+    const AnswerScore score = score_answer(truth, model.effects, model.sd);
+    answer["score"] = json_of(score);
+    text = score_text(score, style_of(stdout));
+    if (!model.note.empty()) text += "\n" + notes_text({model.note});
+  }
   if (!options.json.empty()) write_file(options.json, answer.dump(2) + "\n");
-  fmt::print("revealed: what is hidden in {}\n\n{}", options.folder,
-             effects_text(effects_from(answer.at("effects")), style_of(stdout)));
+  fmt::print("{}", text);
 }
 
 }  // namespace
@@ -35,10 +104,17 @@ void run_reveal(const RevealOptions& options) {
 void setup_reveal(const Command& app) {
   auto options = std::make_shared<RevealOptions>();
   const Command command =
-      app.add_subcommand("reveal", "Open the answer that simulate --hide sealed: the effects.");
+      app.add_subcommand("reveal",
+                         "Open the answer that simulate --hide sealed: the effects, and how near a "
+                         "model comes to them.");
   command.add_option("FOLDER", options->folder, "Recording that simulate --hide wrote")
       .required()
       .type_name("DIR");
+  command
+      .add_option("--model", options->model,
+                  "Model that was found (TOML): truth beside its estimates, z = (estimate - truth) "
+                  "over the standard error by this recording, and a score")
+      .type_name("FILE");
   command.add_option("--json", options->json, "Write the answer as JSON").type_name("FILE");
   command.callback([options] { run_reveal(*options); });
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap simulate: a recording of a wheeled robot on a mesh, with its nominal model.
+#include "call_again.hpp"
 #include "commands.hpp"
 #include "sealed_answer.hpp"
 #include "simulate_options.hpp"
@@ -92,6 +93,11 @@ void run_simulate(const SimulateOptions& options) {
   if (options.seed_drawn) {
     fmt::print("  They were drawn with --seed {}, which simulates the same recording again.\n",
                options.seed);
+  }
+  if (options.hide && !options.out.empty()) {
+    const std::uint64_t next = options.seed + 1;
+    fmt::print("  Try another: {}\n",
+               call_with({{"--seed", std::to_string(next)}, {"--out", next_name(options.out)}}));
   }
 }
 

@@ -102,7 +102,8 @@ std::vector<StraightRun> straight_runs(const std::string& text) {
                           length_of(one.substr(std::min(colon + 1, one.size())), text)};
     if (run.measured > kFarOff * run.reported || run.reported > kFarOff * run.measured) {
       throw UsageError("--straight " + one +
-                       ": the lengths differ by half and more, expected metres for both");
+                       ": the lengths differ by half and more, expected metres for both (is one in "
+                       "centimetres, 100 times too long?)");
     }
     runs.push_back(run);
     begin = comma + 1;
@@ -216,7 +217,8 @@ constexpr const char* kSquareFooter =
     "minus where its odometry had it, x along the first leg and y to its left. Two runs or more "
     "in\n"
     "each direction, five are usual. A column heading (counter-clockwise, rad) is optional: it\n"
-    "finds the same errors another way, and a warning says where both contradict each other.\n\n"
+    "finds the same errors another way, and a warning says where both contradict each other.\n"
+    "Semicolons or tabs may part the fields, numbers may have decimal commas.\n\n"
     "Several rounds: give their files in the order driven. Each was driven with the corrections\n"
     "that all files before it call for; what to use from now on is their product. --model gives\n"
     "corrections that were in force from the start (its effects wheelbase, wheel diameter ratio\n"
@@ -270,7 +272,7 @@ void setup_umbmark(const Command& app) {
       .group("Rehearsal with a simulated robot");
   command.footer(std::string(kSquareFooter) + kWallHelp);
   command.callback([options, command] {
-    check_source(command, !options->files.empty());
+    check_source(command, options->tape, !options->files.empty());
     if (options->tape.simulate && !options->straight.empty()) {
       throw UsageError("--straight is given with --simulate, expected --true-E-s");
     }

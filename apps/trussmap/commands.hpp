@@ -32,6 +32,7 @@ void setup_noise(const Command& app);
 void setup_reveal(const Command& app);
 void setup_serve(const Command& app);
 void setup_simulate(const Command& app);
+void setup_tape(const Command& app);
 void setup_tour(const Command& app);
 void setup_umbmark(const Command& app);
 

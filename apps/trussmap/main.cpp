@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "call_again.hpp"
 #include "commands.hpp"
 #include "help.hpp"
 #include "read_limits.hpp"
@@ -78,6 +79,7 @@ int with_output_written(int status) {
 int run(int argc, char** argv) {
   clean_up_on_signals();
   keep_memory();
+  trussmap::app::remember_call(argc, argv);
   CLI::App app{"trussmap builds landmark maps for mobile robots as elastic trusses.", "trussmap"};
   trussmap::app::begin_help(app);
   app.require_subcommand(1);
@@ -104,6 +106,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_reveal(commands);
   trussmap::app::setup_serve(commands);
   trussmap::app::setup_simulate(commands);
+  trussmap::app::setup_tape(commands);
   trussmap::app::setup_tour(commands);
   trussmap::app::setup_umbmark(commands);
   trussmap::app::add_read_limits(app);

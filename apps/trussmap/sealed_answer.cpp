@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <random>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -55,13 +56,48 @@ std::string checksum(std::string_view bytes) {
   return fmt::format("{:016x}", hash);
 }
 
+constexpr std::uint64_t kKey = 0x7472757373206d61ULL;
+constexpr const char* kCipher = "xor-mt19937-64";
+
+/// XOR with a stream of the key and the answer's checksum: its own inverse.
+std::string crossed(std::string bytes, const std::string& check) {
+  std::seed_seq seed{static_cast<std::uint32_t>(kKey), static_cast<std::uint32_t>(kKey >> 32U),
+                     static_cast<std::uint32_t>(std::stoul(check.substr(0, 8), nullptr, 16)),
+                     static_cast<std::uint32_t>(std::stoul(check.substr(8), nullptr, 16))};
+  std::mt19937_64 stream(seed);
+  for (char& c : bytes) c = static_cast<char>(c ^ static_cast<char>(stream() & 0xFFU));
+  return bytes;
+}
+
+bool is_checksum(const nlohmann::ordered_json& value) {
+  if (!value.is_string()) return false;
+  const auto& text = value.get_ref<const std::string&>();
+  return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+/// The answer's JSON; none where the file is not as written.
+std::optional<std::string> plain_of(const nlohmann::ordered_json& file) {
+  if (!file.is_object() || !file.contains("sealed") || !file.contains("checksum") ||
+      !file["sealed"].is_string() || !is_checksum(file["checksum"])) {
+    return std::nullopt;
+  }
+  std::optional<std::string> plain = from_base64(file["sealed"].get<std::string>());
+  if (plain && file.contains("cipher")) {
+    if (file["cipher"] != kCipher) return std::nullopt;
+    plain = crossed(std::move(*plain), file["checksum"].get<std::string>());
+  }
+  if (plain && file["checksum"] != checksum(*plain)) return std::nullopt;
+  return plain;
+}
+
 }  // namespace
 
 std::string sealed(const nlohmann::ordered_json& answer) {
   const std::string plain = answer.dump();
   const nlohmann::ordered_json file = {
       {"note", "The answer of trussmap simulate --hide, sealed; trussmap reveal opens it."},
-      {"sealed", to_base64(plain)},
+      {"cipher", kCipher},
+      {"sealed", to_base64(crossed(plain, checksum(plain)))},
       {"checksum", checksum(plain)}};
   return file.dump(2) + "\n";
 }
@@ -77,12 +113,8 @@ nlohmann::ordered_json opened(const std::filesystem::path& folder) {
                      "is broken, expected it as trussmap simulate --hide wrote it");
   };
   const auto file = nlohmann::ordered_json::parse(read_file(path), nullptr, false);
-  if (!file.is_object() || !file.contains("sealed") || !file.contains("checksum") ||
-      !file["sealed"].is_string()) {
-    return refuse();
-  }
-  const std::optional<std::string> plain = from_base64(file["sealed"].get<std::string>());
-  if (!plain || file["checksum"] != checksum(*plain)) return refuse();
+  const std::optional<std::string> plain = plain_of(file);
+  if (!plain) return refuse();
   auto answer = nlohmann::ordered_json::parse(*plain, nullptr, false);
   if (!answer.is_object() || !answer.contains("effects")) return refuse();
   return answer;

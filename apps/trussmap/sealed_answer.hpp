@@ -1,9 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// truth.json of `simulate --hide`: the answer, encoded so that it is not read by accident.
+// truth.json of `simulate --hide`: the answer, encrypted by a key of the program, so that nobody
+// reads it by accident. (It is no secret: who has the program has the key.)
 //
-//   {"note": "...", "sealed": base64 of the answer's JSON, "checksum": FNV-1a of that JSON, hex}
+//   {"note": "...", "cipher": "xor-mt19937-64", "sealed": base64 of the answer's JSON, each byte
+//    XOR the low byte of std::mt19937_64 seeded by key and checksum,
+//    "checksum": FNV-1a of that JSON, hex}
+//
+// Without "cipher", as earlier files are, `sealed` is base64 of the JSON itself.
 #pragma once
 
 #include <filesystem>

@@ -9,25 +9,39 @@
 
 #include <charconv>
 
+#include <fmt/format.h>
+
 namespace trussmap::app {
 
-void add_tape_options(const Command& command, TapeOptions& options) {
+namespace {
+
+/// Millimetres for metres: no robot is that wide.
+void require_narrow(const std::string& what, double wheelbase) {
+  constexpr double kWidest = 10.0;     // m
+  constexpr double kHundreds = 100.0;  // up to this many centimetres are a wheelbase
+  if (wheelbase <= kWidest) return;
+  const bool hundreds = wheelbase <= kHundreds;
+  throw UsageError(fmt::format(
+      "{} is {:g} m, wider than any robot, expected metres ({:g} for {:g} "
+      "{}?)",
+      what, wheelbase, wheelbase / (hundreds ? 100.0 : 1000.0), wheelbase, hundreds ? "cm" : "mm"));
+}
+
+}  // namespace
+
+void add_tape_model_options(const Command& command, TapeOptions& options) {
   command
       .add_option("--wheelbase", options.wheelbase,
                   "Distance of the wheels that the robot calculates with [m]; may be left out with "
                   "--model, which has it, and with --simulate (0.34 then)")
       .check(above_zero());
-  command
-      .add_option("--wall-sensors", options.wall_sensors,
-                  "RUNS are distances to two walls, by three sensors: where these are (CSV)")
-      .type_name("FILE");
   command.add_option("--model", options.model, "Model to start from (TOML)").type_name("FILE");
   command.add_option("--out", options.out, "Write the model with what was found (TOML)")
       .type_name("FILE");
   command.add_option("--json", options.json, "Write every figure as JSON").type_name("FILE");
-  add_html_option(command, options.page);
-  add_plots_option(command, options.page);
+}
 
+void add_rehearsal_options(const Command& command, TapeOptions& options) {
   const std::string group = "Rehearsal with a simulated robot";
   command.add_flag("--simulate", options.simulate, "Let a simulated robot make the runs")
       .group(group);
@@ -42,7 +56,9 @@ void add_tape_options(const Command& command, TapeOptions& options) {
       "Error of a measured end position [m, standard deviation per coordinate]");
   add("--scatter-heading", options.scatter_heading, zero_or_more(),
       "Error of a measured end heading [rad, standard deviation]");
-  command.add_option("--runs", options.runs, "Number of runs; of umbmark, in each direction")
+  command
+      .add_option("--runs", options.runs,
+                  "Number of runs; of umbmark, in each direction, of tape, of each kind")
       .check(whole_number(2))
       .capture_default_str()
       .group(group);
@@ -55,13 +71,24 @@ void add_tape_options(const Command& command, TapeOptions& options) {
       .group(group);
 }
 
-void check_source(const Command& command, bool has_files) {
-  const bool simulate = command.count("--simulate") > 0;
+void add_tape_options(const Command& command, TapeOptions& options) {
+  add_tape_model_options(command, options);
+  command
+      .add_option("--wall-sensors", options.wall_sensors,
+                  "RUNS are distances to two walls, by three sensors: where these are (CSV)")
+      .type_name("FILE");
+  add_html_option(command, options.page);
+  add_plots_option(command, options.page);
+  add_rehearsal_options(command, options);
+}
+
+void check_source(const Command& command, const TapeOptions& options, bool has_files) {
+  const bool simulate = options.simulate;
   if (simulate && has_files) {
     throw UsageError("both RUNS.csv and --simulate are given, expected one of them");
   }
   if (!simulate && !has_files) throw UsageError("no runs, expected RUNS.csv or --simulate");
-  if (simulate && command.count("--wall-sensors") > 0) {
+  if (simulate && !options.wall_sensors.empty()) {
     throw UsageError("--wall-sensors is given with --simulate, expected it with RUNS.csv");
   }
   if (simulate) return;
@@ -79,7 +106,9 @@ Model starting_model(const TapeOptions& options) {
       throw UsageError("--wheelbase is not the wheelbase of " + options.model +
                        ", expected one of them, or the same");
     }
+    require_narrow(options.model + ": wheelbase", model.robot.wheelbase);
   } else if (options.wheelbase) {
+    require_narrow("--wheelbase", *options.wheelbase);
     model.robot.wheelbase = *options.wheelbase;
   } else if (!options.simulate) {
     throw UsageError("the wheelbase is missing, expected --wheelbase METRES or --model FILE");

@@ -49,12 +49,20 @@ struct TapeOptions {
   std::string write;
 };
 
+/// --wheelbase, --model, --out and --json.
+void add_tape_model_options(const Command& command, TapeOptions& options);
+
+/// --simulate, and what belongs to it.
+void add_rehearsal_options(const Command& command, TapeOptions& options);
+
+/// All of them, walls and pages too.
 void add_tape_options(const Command& command, TapeOptions& options);
 
 /// Refuses neither or both of runs and --simulate, and options that go with --simulate alone.
-void check_source(const Command& command, bool has_files);
+void check_source(const Command& command, const TapeOptions& options, bool has_files);
 
-/// The model given, or one with the wheelbase alone. Throws UsageError without either.
+/// The model given, or one with the wheelbase alone. Throws UsageError without either, and on a
+/// wheelbase that no robot has.
 [[nodiscard]] Model starting_model(const TapeOptions& options);
 
 /// Where the sensors are that measure the ends by distances to walls; none without --wall-sensors.

@@ -3,6 +3,7 @@
 #include "umbmark_output.hpp"
 
 #include "json_values.hpp"
+#include "trussmap/texts.hpp"
 
 #include <cmath>
 
@@ -100,6 +101,7 @@ ordered_json round_json(const SquareRound& round) {
   out["sd_E_s"] =
       round.setup.scale.dof > 0.0 ? ordered_json(round.setup.scale.standard_error) : nullptr;
   out["headings"] = round.headings ? headings_json(*round.headings) : nullptr;
+  out["verdict"] = square_verdict(round);
   out["warnings"] = round.doubts;
   return out;
 }

@@ -326,7 +326,14 @@ struct PhilRecording {
 //   start1,start2,start3,end1,end2,end3,odometry_x,odometry_y,odometry_heading
 // before and after the run, and where the odometry had the end, from the start.
 //
+//   tape      kind,expected,odometry    straight (m), spin (rad) or rest (0 or nothing)
+//             heading, aside            of straight runs: rad, m (trussmap/umbmark.hpp, TapedRun)
+//             gyro or yaw_rate          of spins and rests: rad, or rad/s; `heading` without these
+//             seconds                   s, of spins and rests
+//             sd, sd_odometry, sd_heading, sd_gyro, sd_start   of these
+//
 // Columns in any order, others are skipped. An error longer than the whole path cannot be one.
+// Written by hand: semicolons or tabs may part the fields, and numbers have decimal commas.
 
 /// Throws InputError with file and line: what CsvReader refuses, a direction that is neither cw nor
 /// ccw, an error larger than `longest` (m), fewer than two runs in a direction.
@@ -353,6 +360,12 @@ struct MeasuredEnds {
 /// The same as read_end_errors, by distances to walls.
 [[nodiscard]] MeasuredEnds read_wall_end_errors(const std::filesystem::path& file,
                                                 const WallSensors& sensors, double longest);
+
+/// `degrees`: angles are in degrees. Throws InputError with file and line, also on lengths and
+/// turns that only another unit explains, on signs that differ, and on a table without a run.
+[[nodiscard]] std::vector<TapedRun> read_taped_runs(const std::filesystem::path& file,
+                                                    bool degrees = false);
+[[nodiscard]] std::string format_taped_runs(const std::vector<TapedRun>& runs);
 
 /// With headings where all runs have them.
 [[nodiscard]] std::string format_square_runs(const SquareRuns& runs);

@@ -12,6 +12,7 @@
 #include "trussmap/simulation.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -90,5 +91,31 @@ struct SimulatedRecording {
 /// The kinds of rough noise that are really in it. Throws std::invalid_argument where the settings
 /// ask for noise of a compass that they leave out.
 [[nodiscard]] RoughNoise rough_of(const SimulationSettings& settings);
+
+/// An effect that acts, or that somebody says does, with both coefficients.
+struct ScoredEffect {
+  enum class Outcome { found, missed, false_alarm };
+  Outcome outcome = Outcome::missed;
+  std::optional<Effect> truth;     ///< none: a false alarm
+  std::optional<Effect> estimate;  ///< none: missed
+  std::vector<double> sd;          ///< of the estimate, one per coefficient; 0 or not finite: none
+  /// (estimate - truth) / sd, one per coefficient; NaN where there is no sd. Where both are at
+  /// different places, or have different thresholds, these have no part in it.
+  std::vector<double> z;
+};
+
+struct AnswerScore {
+  std::vector<ScoredEffect> effects;  ///< the true ones in their order, then false alarms
+  int found = 0;
+  int missed = 0;
+  int false_alarms = 0;
+};
+
+/// What a model says, beside what really acts. Effects are the same where channel and shapes are,
+/// or where both are one entry of the catalogue with other parameters (another place). An estimate
+/// that is 0, or has no coefficients, says nothing. `sd`: as many lists as estimates, or none.
+[[nodiscard]] AnswerScore score_answer(const std::vector<Effect>& truth,
+                                       const std::vector<Effect>& estimate,
+                                       const std::vector<std::vector<double>>& sd = {});
 
 }  // namespace trussmap

@@ -91,6 +91,8 @@ enum class Mood { good, doubt, bad };
 /// A line per coefficient, under a heading.
 [[nodiscard]] std::string effects_text(const std::vector<Effect>& effects,
                                        TextStyle style = TextStyle::plain);
+/// What acts beside what a model says of it, in the same words and units, and the score.
+[[nodiscard]] std::string score_text(const AnswerScore& score, TextStyle style = TextStyle::plain);
 /// `folder`: where it was written; empty: nowhere. Hidden effects are not named.
 [[nodiscard]] std::string simulation_text(const SimulatedRecording& simulated,
                                           const SimulationSettings& settings,
@@ -113,9 +115,16 @@ struct TestedDrives {
 /// Of the last round, with the systematic error of each.
 [[nodiscard]] std::string square_text(const std::vector<SquareRound>& rounds, SquareMethod method,
                                       TextStyle style = TextStyle::plain);
+/// "worth correcting", "nothing left to correct", or "doubtful": there are doubts.
+[[nodiscard]] std::string_view square_verdict(const SquareRound& round);
 /// What other paths, driven alone, would have hidden; "" without any.
 [[nodiscard]] std::string paths_alone_text(const std::vector<PathAlone>& paths,
                                            TextStyle style = TextStyle::plain);
+/// `constants`: taped_constants of the model that the robot calculated with.
+[[nodiscard]] std::string tape_text(const TapeCalibration& found,
+                                    const std::vector<TapedConstant>& constants,
+                                    TextStyle style = TextStyle::plain);
+[[nodiscard]] std::string_view name_of(TapeVerdict verdict);  ///< "worth correcting"
 [[nodiscard]] std::string wheel_noise_text(const NoiseAnalysis& result,
                                            TextStyle style = TextStyle::plain);
 

@@ -49,6 +49,7 @@
 #pragma once
 
 #include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
 #include "trussmap/test_path.hpp"
 
 #include <functional>
@@ -250,7 +251,9 @@ struct SquareRound {
   std::vector<std::string> doubts;         ///< square_doubts, square_outliers and heading_doubts
 };
 
-/// Throws as the functions above do.
+/// Throws as the functions above do. Where the centres, or headings and positions, contradict each
+/// other, both solutions' standard errors hold what that leaves, too: two of the four coordinates
+/// are free to contradict, which is two degrees of freedom.
 [[nodiscard]] SquareRound analyse_round(SquareRuns runs, const SquareSetup& setup,
                                         const GeometryErrors& in_force = {});
 
@@ -312,5 +315,81 @@ struct PathAlone {
   std::string path;  ///< as text
   PathTuning tuned;
 };
+
+// Single motions beside a tape and a protractor: straight runs, turns on the spot, rests.
+//
+//   tape T of a run that odometry has as D         T = E_s D sin(h/2)/(h/2)   h: turned, rad
+//   turn theta that odometry has as phi            theta = r phi,             r = E_s / E_b
+//   turn h of a run that odometry has as straight  h = r 2 q D / b,           E_d = (1 + q)/(1 - q)
+//   gyro's turn G of a turn or a rest of t seconds theta = (1 + s) G - g t    s: gyro_scale, g:
+//   gyro
+//
+// each by least squares through the origin. A tape shows no E_d: a run that ends aside bends, or
+// was set off askew, y = L theta_0 + L^2 h/(2 D). Where no tape gives E_s, turns give E_b for 1.
+
+enum class TapedKind { straight, spin, rest };
+
+/// kAbsent: not measured. Angles counter-clockwise.
+struct TapedRun {
+  TapedKind kind = TapedKind::straight;
+  double expected = 0.0;         ///< m, start to stop by the tape; rad by the protractor; 0 at rest
+  double odometry = 0.0;         ///< m; rad
+  double heading = kAbsent;      ///< rad turned on a straight run, less what the odometry says
+  double aside = kAbsent;        ///< m to the left of where a straight run was aimed
+  double gyro = kAbsent;         ///< rad, of a turn or a rest
+  double seconds = kAbsent;      ///< s
+  double sd = kAbsent;           ///< of `expected`, as the next four of one run, each its own error
+  double sd_odometry = kAbsent;  ///< m; rad
+  double sd_heading = kAbsent;   ///< rad
+  double sd_gyro = kAbsent;      ///< rad
+  double sd_start = kAbsent;     ///< rad, of where a straight run was aimed, alike in all runs
+  std::size_t line = 0;          ///< of its table, for messages; 0: none
+};
+
+/// What runs beside a tape say, on top of what the robot corrects for. An estimate without degrees
+/// of freedom has no standard error.
+struct TapeCalibration {
+  int straight_runs = 0;
+  int turns = 0;
+  int rests = 0;
+  std::optional<Estimate> scale;            ///< E_s
+  std::optional<Estimate> turn_factor;      ///< r, true turns over odometry's
+  std::optional<Estimate> diameter_ratio;   ///< E_d
+  std::optional<Estimate> wheelbase_ratio;  ///< E_b; E_b / E_s without straight runs
+  std::optional<Estimate> gyro_scale;       ///< s
+  std::optional<Estimate> gyro_bias;        ///< g, rad/s
+  std::vector<std::string> look_alikes;     ///< effects that these turns do not tell from E_b
+  std::vector<std::string> undetermined;    ///< what was not determined, and why
+  std::vector<std::string> doubts;          ///< runs that contradict each other: errors are wider
+  std::vector<std::string> notes;           ///< what would make it surer
+};
+
+/// `wheelbase`: that the robot calculates with, m. Throws std::invalid_argument on no run, on a
+/// wheelbase, length or turn that is 0, a length below 0, and numbers that are not finite.
+[[nodiscard]] TapeCalibration calibrate_by_tape(const std::vector<TapedRun>& runs,
+                                                double wheelbase);
+
+/// What was found, on top of what the model has: as set_geometry_errors, without effects for what
+/// was not determined, and the effects `gyro scale` and `gyro bias`. Throws like geometry_errors.
+void set_taped(Model& model, const TapeCalibration& found);
+
+/// A constant in its owner's figures.
+struct TapedConstant {
+  std::string name;     ///< "wheelbase", "left wheel", "right wheel", "wheels", "gyro scale", ...
+  double before = 0.0;  ///< m; what travels and gyro's turns are multiplied by; rad/s taken off
+  Estimate now;
+  std::string unit;
+};
+
+/// What `model` corrected for, and what it should from now on, of all that was determined. Throws
+/// like set_taped.
+[[nodiscard]] std::vector<TapedConstant> taped_constants(const Model& model,
+                                                         const TapeCalibration& found);
+
+/// What to make of it. `unsure`: nothing that was found has a standard error.
+enum class TapeVerdict { worth_correcting, nothing_to_correct, unsure, doubtful };
+[[nodiscard]] TapeVerdict tape_verdict(const TapeCalibration& found);
+/// More than three standard errors from `nominal`.
+[[nodiscard]] bool is_off(const std::optional<Estimate>& one, double nominal);
 
 }  // namespace trussmap

@@ -13,6 +13,8 @@ namespace {
 constexpr const char* kRatio = "wheel diameter ratio";
 constexpr const char* kWheelbaseEffect = "wheelbase";
 constexpr const char* kScale = "wheel scale";
+constexpr const char* kGyroScale = "gyro scale";
+constexpr const char* kGyroBias = "gyro bias";
 
 /// sin(x)/x and its derivative.
 struct Sinc {
@@ -94,6 +96,36 @@ void set_geometry_errors(Model& model, const GeometryErrors& errors) {
   set_effect(model, kWheelbaseEffect, Channel::turn, scale * (1.0 / errors.wheelbase_ratio - 1.0));
   if (scale != 1.0 || effect_named(model, kScale) != model.effects.end()) {
     set_effect(model, kScale, Channel::wheels, scale - 1.0);
+  }
+}
+
+void set_taped(Model& model, const TapeCalibration& found) {
+  const auto value_of = [](const std::optional<Estimate>& one) { return one ? one->value : 1.0; };
+  const GeometryErrors errors = combined(
+      geometry_errors(model),
+      {value_of(found.diameter_ratio), value_of(found.wheelbase_ratio), value_of(found.scale)});
+  const auto lacks = [&model](const char* name) {
+    return effect_named(model, name) == model.effects.end();
+  };
+  const bool no_ratio = !found.diameter_ratio && lacks(kRatio);
+  const bool no_wheelbase = !found.wheelbase_ratio && lacks(kWheelbaseEffect);
+  double scale = 0.0;
+  double bias = 0.0;
+  for (const Effect& effect : model.effects) {
+    if (effect.name == kGyroScale) scale = coefficient(effect, Channel::gyro_scale);
+    if (effect.name == kGyroBias) bias = coefficient(effect, Channel::gyro);
+  }
+  set_geometry_errors(model, errors);
+  if (no_ratio) model.effects.erase(effect_named(model, kRatio));
+  if (no_wheelbase) model.effects.erase(effect_named(model, kWheelbaseEffect));
+  // theta = (1 + s) ((1 + s_0) G - g_0 t) - g t
+  const double more = found.gyro_scale ? found.gyro_scale->value : 0.0;
+  if (found.gyro_scale) {
+    set_effect(model, kGyroScale, Channel::gyro_scale, (1.0 + scale) * (1.0 + more) - 1.0);
+  }
+  if (found.gyro_bias || !lacks(kGyroBias)) {
+    const double rest = found.gyro_bias ? found.gyro_bias->value : 0.0;
+    set_effect(model, kGyroBias, Channel::gyro, (1.0 + more) * bias + rest);
   }
 }
 

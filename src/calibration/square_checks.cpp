@@ -49,6 +49,59 @@ SquareClusters exchanged(const SquareClusters& clusters) {
   return result;
 }
 
+bool centres_contradict(const SquareConsistency& consistency, const SquareClusters& clusters) {
+  constexpr double kSureContradiction = 1e-3;
+  constexpr double kShare = 0.1;  // of the error, where there is no scatter to judge by
+  return std::isnan(consistency.p_value)
+             ? consistency.residual > kShare * clusters.largest_offset.value
+             : consistency.p_value < kSureContradiction;
+}
+
+constexpr Estimate SquareSolution::*kFigures[] = {
+    &SquareSolution::alpha,           &SquareSolution::beta,        &SquareSolution::diameter_ratio,
+    &SquareSolution::wheelbase_ratio, &SquareSolution::left_factor, &SquareSolution::right_factor,
+    &SquareSolution::wheelbase};
+
+/// Each figure's error, and `by`'s beside it.
+void widen(SquareSolution& solution, const SquareSolution& by) {
+  for (const auto figure : kFigures) {
+    const Estimate& other = by.*figure;
+    solution.*figure = also_by(solution.*figure, 1.0, {0.0, other.standard_error, other.dof});
+  }
+}
+
+/// Centres as uncertain as what two unknowns leave of their four coordinates says, E_s certain.
+SquareClusters as_left(const SquareClusters& clusters, double residual) {
+  SquareClusters result = clusters;
+  // The residual is a mean over four coordinates, of which two are free to contradict.
+  const double variance = 2.0 * residual * residual;
+  for (SampleMean* one : {&result.cw, &result.ccw}) {
+    one->covariance = variance * Eigen::Matrix2d::Identity();
+    one->count = 2;
+  }
+  return result;
+}
+
+/// Two figures for one thing that are apart by d: each is off by d / sqrt(2), as far as these tell.
+SquareSolution as_headings_differ(const SquareSolution& exact, const SquareHeadings& headings,
+                                  const SquareSetup& setup) {
+  const auto apart = [](double d) { return Estimate{0.0, std::abs(d) / std::sqrt(2.0), 1.0}; };
+  const auto times = [](double factor, Estimate one) {
+    one.standard_error *= factor;
+    return one;
+  };
+  SquareSolution by;
+  by.alpha = apart(headings.alpha_excess.value);
+  by.beta = apart(headings.beta_excess.value);
+  by.diameter_ratio = apart(headings.diameter_ratio.value - exact.diameter_ratio.value);
+  by.wheelbase_ratio = apart(headings.wheelbase_ratio.value - exact.wheelbase_ratio.value);
+  const double per_ratio =
+      2.0 * exact.scale / std::pow(exact.diameter_ratio.value + 1.0, 2);  // of c_L and c_R
+  by.left_factor = by.right_factor = times(per_ratio, by.diameter_ratio);
+  by.wheelbase = times(setup.wheelbase, by.wheelbase_ratio);
+  return by;
+}
+
 double end_error(const GeometryErrors& errors, double wheelbase, const TestPath& path) {
   return path_error(path, wheelbase, errors).error.head<2>().norm();
 }
@@ -68,8 +121,22 @@ SquareConsistency square_consistency(const SquareClusters& clusters, const Squar
   return result;
 }
 
+void widen_errors(SquareRound& round) {
+  SquareSetup certain = round.setup;
+  certain.scale = {round.setup.scale.value, 0.0, 0.0};
+  if (centres_contradict(round.consistency, round.clusters)) {
+    const SquareClusters left = as_left(round.clusters, round.consistency.residual);
+    widen(round.exact, solve_square(left, certain));
+    widen(round.formulas, umbmark(left, certain));
+  }
+  if (round.headings && !heading_doubts(*round.headings).empty()) {
+    const SquareSolution by = as_headings_differ(round.exact, *round.headings, round.setup);
+    widen(round.exact, by);
+    widen(round.formulas, by);
+  }
+}
+
 std::vector<std::string> square_doubts(const SquareClusters& clusters, const SquareSetup& setup) {
-  constexpr double kSureContradiction = 1e-3;
   constexpr double kClearlyBetter = 0.3;  // residual after / before exchanging the labels
   constexpr double kSuspectShare = 0.25;  // of the side: no wheeled robot is that far off
   constexpr double kRoomSize = 100.0;     // m
@@ -90,16 +157,14 @@ std::vector<std::string> square_doubts(const SquareClusters& clusters, const Squ
                     setup.wheelbase, setup.side));
   }
   if (largest > kSuspectShare * setup.side) {
-    doubts.push_back(
-        fmt::format("a centre of gravity is {:.3g} m off after a square of {:g} m; x "
-                    "and y are in metres, absolute - calculated",
-                    largest, setup.side));
+    doubts.push_back(fmt::format(
+        "a centre of gravity is {:.3g} m off after a square of {:g} m; x "
+        "and y are in metres (these could be centimetres, 100 times too long), absolute - "
+        "calculated",
+        largest, setup.side));
   }
   const SquareConsistency consistency = square_consistency(clusters, setup);
-  const bool contradicts = std::isnan(consistency.p_value)
-                               ? consistency.residual > 0.1 * largest
-                               : consistency.p_value < kSureContradiction;
-  if (!contradicts) return doubts;
+  if (!centres_contradict(consistency, clusters)) return doubts;
   if (consistency.residual_exchanged < kClearlyBetter * consistency.residual) {
     doubts.push_back(fmt::format(
         "x and y contradict each other (the fit misses the centres by {:.2g} m), and would not "

@@ -34,4 +34,8 @@ struct SquareEnds {
           path_error(square_path(setup.side, Direction::ccw), setup.wheelbase, errors)};
 }
 
+/// The errors of both solutions, by as much wider as the centres, or headings and positions,
+/// contradict each other; nothing where they do not.
+void widen_errors(SquareRound& round);
+
 }  // namespace trussmap

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "calibration/run_ratio.hpp"
+#include "calibration/square_ends.hpp"
 #include "calibration/welch.hpp"
 #include "trussmap/umbmark.hpp"
 
@@ -42,10 +44,12 @@ SquareRound analyse_round(SquareRuns runs, const SquareSetup& setup,
   round.doubts = square_doubts(round.clusters, setup);
   for (std::string& doubt : square_outliers(round.runs)) round.doubts.push_back(std::move(doubt));
   round.headings = square_headings(round.runs, setup, round.exact);
-  if (!round.headings) return round;
-  for (std::string& doubt : heading_doubts(*round.headings)) {
-    round.doubts.push_back(std::move(doubt));
+  if (round.headings) {
+    for (std::string& doubt : heading_doubts(*round.headings)) {
+      round.doubts.push_back(std::move(doubt));
+    }
   }
+  widen_errors(round);
   return round;
 }
 
@@ -73,8 +77,7 @@ Estimate wheel_scale(const std::vector<StraightRun>& runs, double turn_per_metre
     const double half = 0.5 * turn_per_metre * reported;
     return half == 0.0 ? reported : reported * std::sin(half) / half;
   };
-  double products = 0.0;
-  double squares = 0.0;
+  std::vector<RunOfRatio> rows;
   for (const StraightRun& run : runs) {
     if (!(run.measured > 0.0) || !(run.reported > 0.0)) {
       throw std::invalid_argument("the lengths of a straight run must be above 0");
@@ -82,19 +85,9 @@ Estimate wheel_scale(const std::vector<StraightRun>& runs, double turn_per_metre
     if (std::abs(turn_per_metre * run.reported) >= 2.0 * std::numbers::pi) {
       throw std::invalid_argument("a straight run must not turn by a whole circle");
     }
-    products += run.measured * chord(run.reported);
-    squares += chord(run.reported) * chord(run.reported);
+    rows.push_back({chord(run.reported), run.measured});
   }
-  Estimate scale{products / squares, 0.0, 0.0};
-  if (runs.size() < 2) return scale;
-  double left = 0.0;
-  for (const StraightRun& run : runs) {
-    left += std::pow(run.measured - scale.value * chord(run.reported), 2);
-  }
-  if (!(left > 0.0)) return scale;
-  scale.dof = static_cast<double>(runs.size() - 1);
-  scale.standard_error = std::sqrt(left / scale.dof / squares);
-  return scale;
+  return ratio_of(rows, false).ratio;
 }
 
 std::vector<SquareRound> square_rounds(std::size_t count, double side, double wheelbase,

@@ -144,7 +144,8 @@ ExactFit fit_exactly(const SquareClusters& clusters, const SquareSetup& setup) {
   if (best.left.norm() > 0.5 * measured && measured > 0.5 * setup.side) {
     throw SolveError(
         "no wheelbase and wheel ratio near the nominal ones bring the robot to where the runs "
-        "ended; are the errors in metres, and absolute - calculated?");
+        "ended; are the errors in metres (not centimetres, 100 times too long), and absolute - "
+        "calculated?");
   }
   return best;
 }

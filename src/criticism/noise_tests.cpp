@@ -25,6 +25,7 @@ constexpr double kLeastRedundancy = 1e-6;
 constexpr double kWorthFitting = 0.01;  // p
 constexpr double kLeastDrive = 0.1;     // m
 constexpr double kUnchecked = 1e-6;
+constexpr double kFewest = 10.0;  // degrees of freedom that have tails to speak of
 
 /// Upper tail of a law with this skewness, in its standard deviations (Pearson's three moments).
 double skewed_tail(double z, double skewness) {
@@ -122,6 +123,8 @@ class ShapeStatistics {
   }
 
   [[nodiscard]] std::size_t pairs() const { return successive_.size(); }
+  /// Degrees of freedom of all that is checked.
+  [[nodiscard]] double redundancy() const { return redundancy_; }
 
   [[nodiscard]] ResidualShape of(const Eigen::VectorXd& r) const {
     double squares = 0.0;
@@ -161,6 +164,7 @@ class ShapeStatistics {
   void add_measurement(std::size_t k, const Measurement& one, const FitProjection& P) {
     if (P.left_out(k)) return;
     const SymmetricModes axes = symmetric_modes(P.own_block(k));
+    redundancy_ += axes.eigenvalues.head(one.rows).sum();
     Eigen::Index checked = 0;
     for (Eigen::Index a = 0; a < one.rows; ++a) checked += axes.eigenvalues[a] > kUnchecked;
     if (checked == 0) return;
@@ -174,6 +178,7 @@ class ShapeStatistics {
   const RecordingProblem& problem_;
   const RecordingSystem& system_;
   std::vector<Standardised> standardised_;
+  double redundancy_ = 0.0;
   std::vector<std::pair<std::size_t, std::size_t>> successive_;
 };
 
@@ -195,6 +200,7 @@ NoiseTest shape_test(const char* name, double found, const Eigen::VectorXd& draw
 void test_shapes(const FitState& fit, const NoiseLikelihood& under, std::vector<NoiseTest>& tests) {
   const FitProjection P(fit, under.problem(), under.system(), under.nuisance());
   const ShapeStatistics statistics(under.problem(), under.system(), P);
+  if (statistics.redundancy() < kFewest) return;
   std::mt19937_64 random(2);
   std::normal_distribution<double> normal;
   Eigen::VectorXd tails(kDraws);

@@ -13,8 +13,9 @@
 #include <cstdint>
 
 namespace trussmap {
-CsvReader::CsvReader(std::string_view text, std::string file)
-    : text_(text), file_(std::move(file)) {
+
+CsvReader::CsvReader(std::string_view text, std::string file, CsvForm form)
+    : text_(text), file_(std::move(file)), form_(form) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (text_.substr(0, kByteOrderMark.size()) == kByteOrderMark) at_ = kByteOrderMark.size();
   if (const std::size_t bad = invalid_utf8(text_); bad != std::string_view::npos) {
@@ -22,6 +23,7 @@ CsvReader::CsvReader(std::string_view text, std::string file)
     throw InputError(file_, static_cast<std::size_t>(line) + 1,
                      "a byte that is no UTF-8 text, expected UTF-8");
   }
+  if (form_ == CsvForm::by_hand) separator_ = separator_of_header();
   if (!read_record()) {
     throw InputError(file_, 1, "the file is empty, expected a header row");
   }
@@ -58,8 +60,31 @@ int CsvReader::require(std::string_view column) const {
   return place;
 }
 
+char CsvReader::separator_of_header() const {
+  std::size_t at = at_;
+  for (;;) {  // over what read_record skips
+    const std::size_t end = std::min(text_.find('\n', at), text_.size());
+    const std::string_view line = text_.substr(at, end - at);
+    if (!line.empty() && line != "\r" && line.front() != '#') {
+      if (line.find(',') != std::string_view::npos) return ',';
+      if (line.find(';') != std::string_view::npos) return ';';
+      return line.find('\t') != std::string_view::npos ? '\t' : ',';
+    }
+    if (end == text_.size()) return ',';
+    at = end + 1;
+  }
+}
+
+bool CsvReader::is_blank() const {
+  const std::vector<std::string_view>& fields = record_.fields();
+  return std::all_of(fields.begin(), fields.end(),
+                     [](std::string_view field) { return field.empty(); });
+}
+
 bool CsvReader::next() {
-  if (!read_record()) return false;
+  do {
+    if (!read_record()) return false;
+  } while (form_ == CsvForm::by_hand && is_blank());
   if (record_.fields().size() == columns_.size()) return true;
   const bool at_end = at_ >= text_.size();
   const bool line_open = text_.back() != '\n';
@@ -69,7 +94,10 @@ bool CsvReader::next() {
   }
   fail(std::to_string(record_.fields().size()) +
        (record_.fields().size() == 1 ? " field" : " fields") + ", expected " +
-       std::to_string(columns_.size()) + " as in the header");
+       std::to_string(columns_.size()) + " as in the header" +
+       (form_ == CsvForm::by_hand && separator_ == ',' && record_.fields().size() > columns_.size()
+            ? " (decimal commas? part the fields by semicolons, or quote the numbers)"
+            : ""));
 }
 
 bool CsvReader::read_record() {
@@ -82,7 +110,7 @@ bool CsvReader::read_record() {
   }
   if (at_ >= text_.size()) return false;
   line_ = next_line_;
-  at_ = record_.read(text_, at_);
+  at_ = record_.read(text_, at_, separator_, separator_ != ',');
   next_line_ += record_.line_ends();
   if (record_.wrong() != nullptr) fail(record_.wrong());
   return true;
@@ -93,23 +121,30 @@ std::string_view CsvReader::field(int column) const {
 }
 
 double CsvReader::number(int column) const {
-  const std::string_view text = field(column);
+  std::string_view text = field(column);
   const std::string& name = columns_[idx(column)];
   if (text.empty()) fail("column " + name + " is empty, expected a number");
+  std::string pointed;
+  if (form_ == CsvForm::by_hand && std::count(text.begin(), text.end(), ',') == 1 &&
+      text.find('.') == std::string_view::npos) {
+    pointed = text;
+    pointed[pointed.find(',')] = '.';
+    text = pointed;
+  }
   double value = 0.0;
   const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
   const char* first = text.data() + (plus ? 1 : 0);
   const char* last = text.data() + text.size();
   const auto [end, status] = std::from_chars(first, last, value);
   if (status == std::errc::result_out_of_range) {
-    fail("column " + name + " is " + shown_field(text) +
+    fail("column " + name + " is " + shown_field(field(column)) +
          ", expected a number within double's range");
   }
   if (status != std::errc() || end != last) {
-    fail("column " + name + " is " + shown_field(text) + ", expected a number");
+    fail("column " + name + " is " + shown_field(field(column)) + ", expected a number");
   }
   if (!std::isfinite(value)) {
-    fail("column " + name + " is " + shown_field(text) + ", expected a finite number");
+    fail("column " + name + " is " + shown_field(field(column)) + ", expected a finite number");
   }
   return value;
 }

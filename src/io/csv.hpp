@@ -17,11 +17,20 @@
 
 namespace trussmap {
 
+/// How strictly a table is read.
+enum class CsvForm {
+  exact,
+  /// As people and spreadsheets write it: fields between semicolons or tabs where the header has
+  /// these, blanks beside them no part of a field; a comma for a number's point ("0,31" in quotes
+  /// where commas part the fields); rows without anything skipped.
+  by_hand
+};
+
 /// Walks through a table row by row. The text must outlive it.
 class CsvReader {
  public:
   /// Reads the header. Throws InputError: an empty file, a name twice, invalid UTF-8.
-  CsvReader(std::string_view text, std::string file);
+  CsvReader(std::string_view text, std::string file, CsvForm form = CsvForm::exact);
 
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
 
@@ -54,9 +63,13 @@ class CsvReader {
 
  private:
   bool read_record();
+  [[nodiscard]] char separator_of_header() const;
+  [[nodiscard]] bool is_blank() const;
 
   std::string_view text_;
   std::string file_;
+  CsvForm form_ = CsvForm::exact;
+  char separator_ = ',';
   std::size_t at_ = 0;
   std::size_t line_ = 0;       // of the present record's start
   std::size_t next_line_ = 1;  // of text_[at_]

@@ -50,11 +50,13 @@ void refuse_wall_distances(const std::filesystem::path& file, const CsvReader& t
 
 void require_shorter(const CsvReader& table, const std::string& name, double value,
                      double longest) {
+  constexpr double kHundreds = 6.25;  // of the path: up to a square's side in centimetres
   if (std::abs(value) <= longest) return;
-  table.fail(
-      fmt::format("{} is {:g} m, more than the whole path of {:g} m, expected metres "
-                  "(are these millimetres?)",
-                  name, value, longest));
+  table.fail(fmt::format(
+      "{} is {:g} m, more than the whole path of {:g} m, expected metres (are these {}?)", name,
+      value, longest,
+      std::abs(value) <= kHundreds * longest ? "centimetres, 100 times too long, or millimetres"
+                                             : "millimetres, 1000 times too long"));
 }
 
 bool turns_right(const CsvReader& table, int column) {
@@ -84,7 +86,7 @@ void require_scatter(const EndErrors& errors, const std::filesystem::path& file)
 
 SquareRuns read_square_runs(const std::filesystem::path& file, double longest) {
   const std::string text = read_file(file);
-  CsvReader table(text, file.string());
+  CsvReader table(text, file.string(), CsvForm::by_hand);
   refuse_wall_distances(file, table);
   const int direction = table.require("direction");
   const int x = table.require("x");
@@ -105,7 +107,7 @@ SquareRuns read_square_runs(const std::filesystem::path& file, double longest) {
 
 EndErrors read_end_errors(const std::filesystem::path& file, double longest) {
   const std::string text = read_file(file);
-  CsvReader table(text, file.string());
+  CsvReader table(text, file.string(), CsvForm::by_hand);
   refuse_wall_distances(file, table);
   const int x = table.require("x");
   const int y = table.require("y");

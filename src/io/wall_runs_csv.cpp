@@ -74,7 +74,7 @@ class WallColumns {
 
 WallSensors read_wall_sensors(const std::filesystem::path& file) {
   const std::string text = read_file(file);
-  CsvReader table(text, file.string());
+  CsvReader table(text, file.string(), CsvForm::by_hand);
   const int faces = table.require("faces");
   const int x = table.require("x");
   const int y = table.require("y");
@@ -107,7 +107,7 @@ WallSensors read_wall_sensors(const std::filesystem::path& file) {
 SquareRuns read_square_wall_runs(const std::filesystem::path& file, const WallSensors& sensors,
                                  double longest) {
   const std::string text = read_file(file);
-  CsvReader table(text, file.string());
+  CsvReader table(text, file.string(), CsvForm::by_hand);
   const int direction = table.require("direction");
   const WallColumns columns(table);
   SquareRuns runs;
@@ -124,7 +124,7 @@ SquareRuns read_square_wall_runs(const std::filesystem::path& file, const WallSe
 MeasuredEnds read_wall_end_errors(const std::filesystem::path& file, const WallSensors& sensors,
                                   double longest) {
   const std::string text = read_file(file);
-  CsvReader table(text, file.string());
+  CsvReader table(text, file.string(), CsvForm::by_hand);
   const WallColumns columns(table);
   MeasuredEnds ends;
   while (table.next()) {

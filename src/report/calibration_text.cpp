@@ -13,11 +13,17 @@ namespace trussmap {
 namespace {
 
 constexpr double kFarTooLarge = 2.0;  // chi^2/dof: more than any choice of noise explains
+constexpr int kFewest = 10;           // degrees of freedom that tell of noise stated too large
 
 struct Verdict {
   Mood mood = Mood::doubt;
   std::string text;
 };
+
+bool nothing_determined(const WheelCalibration& found) {
+  return !found.diameter_ratio && !found.wheelbase_ratio && !found.scale && !found.noise_left &&
+         !found.noise_right && found.constants.empty();
+}
 
 /// What the held-out legs say of the calibration.
 Verdict verdict(const CalibrationValidation& held) {
@@ -86,7 +92,10 @@ std::string text(const FixAlignment& fixes) {
 
 std::string calibration_text(const WheelCalibration& found, const CalibrationValidation& held,
                              const std::optional<TestedDrives>& test, TextStyle style) {
-  const auto [mood, said] = verdict(held);
+  const auto [mood, said] =
+      nothing_determined(found)
+          ? Verdict{Mood::bad, "nothing determined: these recordings show none of the constants"}
+          : verdict(held);
   std::string out = verdict_text(mood, said, style) + "\n";
   TextTable table;
   table.columns = {Align::left, Align::right, Align::left};
@@ -118,7 +127,7 @@ std::string calibration_text(const WheelCalibration& found, const CalibrationVal
         "as "
         "large\n",
         std::sqrt(dispersion));
-  } else if (found.dof > 0 && dispersion < 1.0 / kFarTooLarge) {
+  } else if (found.dof >= kFewest && dispersion < 1.0 / kFarTooLarge) {
     out += fmt::format(
         "  errors are {:.2g} times what the model's noise allows: it is stated too large, and so "
         "is the \u00b1\n",

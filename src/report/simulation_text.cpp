@@ -2,11 +2,70 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/catalogue.hpp"
 #include "trussmap/texts.hpp"
+#include "trussmap/wording.hpp"
+
+#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace trussmap {
+namespace {
+
+const char* outcome_in_words(const ScoredEffect& row) {
+  if (row.outcome == ScoredEffect::Outcome::found) return "found";
+  return row.outcome == ScoredEffect::Outcome::missed ? "missed" : "false";
+}
+
+/// A row per coefficient, truth beside estimate in the catalogue's unit.
+void add_scored(TextTable& table, const ScoredEffect& row) {
+  const Effect& effect = row.truth ? *row.truth : *row.estimate;
+  const CatalogueEntry* entry = find_entry(effect.name);
+  for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
+    std::vector<std::string> cells = {k == 0 ? outcome_in_words(row) : "",
+                                      k == 0 ? effect.name : ""};
+    cells.push_back(row.truth ? fmt::format("{:.4g}", row.truth->coefficients[k]) : "");
+    const bool there = row.estimate && k < row.estimate->coefficients.size();
+    const double sd = there && k < row.sd.size() && std::isfinite(row.sd[k]) ? row.sd[k] : 0.0;
+    const QuantityText text =
+        there ? quantity_text(row.estimate->coefficients[k], sd) : QuantityText{};
+    cells.push_back(text.value);
+    cells.push_back(text.error.empty() ? "" : "\u00b1 " + text.error);
+    const bool known = k < row.z.size() && std::isfinite(row.z[k]);
+    cells.push_back(known ? fmt::format("{:+.1f}", row.z[k]) : "");
+    cells.push_back(entry == nullptr ? "" : std::string(entry->unit));
+    cells.push_back(effect.shape[k % effect.shape.size()].text());
+    table.rows.push_back(std::move(cells));
+  }
+}
+
+std::string words_of(const Effect& effect, std::vector<double> sd) {
+  sd.resize(effect.coefficients.size(), 0.0);
+  return in_words(effect, sd);
+}
+
+}  // namespace
+
+std::string score_text(const AnswerScore& score, TextStyle style) {
+  const bool all = score.missed == 0 && score.false_alarms == 0;
+  std::string out = verdict_text(all ? Mood::good : Mood::doubt,
+                                 fmt::format("score: {} found, {} missed, {} false", score.found,
+                                             score.missed, score.false_alarms),
+                                 style) +
+                    "\n";
+  TextTable table{{Align::left, Align::left, Align::right, Align::right, Align::left, Align::right,
+                   Align::left, Align::left},
+                  {{"", "effect", "truth", "estimate", "", "z", "unit", "shape"}},
+                  true,
+                  2};
+  for (const ScoredEffect& row : score.effects) add_scored(table, row);
+  if (table.rows.size() > 1) out += "\n" + table_text(table, style) + "\n";
+  for (const ScoredEffect& row : score.effects) {
+    if (row.truth) out += "  truth:    " + words_of(*row.truth, {}) + "\n";
+    if (row.estimate) out += "  estimate: " + words_of(*row.estimate, row.sd) + "\n";
+  }
+  return out;
+}
 
 std::string effects_text(const std::vector<Effect>& effects, TextStyle style) {
   TextTable table;

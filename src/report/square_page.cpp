@@ -144,6 +144,12 @@ Chart ratio_chart(const SquareRound& last) {
 std::string verdict(const SquareCalibration& found) {
   const SquareClusters& clusters = found.rounds.back().clusters;
   const double size = kMillimetres * clusters.largest_offset.value;
+  if (!found.rounds.back().doubts.empty()) {
+    return fmt::format(
+        "Doubtful: the square ends {:.0f} mm off, but the runs contradict themselves "
+        "or look mistaken, as the notes say; settle these first.",
+        size);
+  }
   if (!clusters.second_round_worthwhile && clusters.sem > 0.0) {
     return fmt::format(
         "Nothing left to correct: the systematic error of {:.0f} mm is within the runs' scatter.",
@@ -169,7 +175,8 @@ Page square_page(const SquareCalibration& found, const std::string& subject) {
   PageContent page;
   page.command = "umbmark";
   page.subject = subject;
-  page.tone = last.clusters.second_round_worthwhile ? Tone::bad : Tone::good;
+  const bool good = last.doubts.empty() && !last.clusters.second_round_worthwhile;
+  page.tone = good ? Tone::good : Tone::bad;
   page.verdict = verdict(found);
   page.facts = {
       {with_error(found.wheelbase, "m"), "wheelbase to use from now on"},

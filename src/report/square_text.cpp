@@ -15,9 +15,10 @@ std::string verdict(const SquareRound& round, std::size_t number) {
   const QuantityText size =
       quantity_text(clusters.largest_offset.value, clusters.largest_offset.standard_error);
   const std::string again = number > 1 ? "still " : "";
-  if (!(clusters.sem > 0.0)) {
-    return fmt::format("systematic error {} m; the runs show no scatter to judge it by\n",
-                       size.value);
+  if (!round.doubts.empty()) {
+    return fmt::format("doubtful: systematic error {} m; correct by it once {} below {} settled\n",
+                       size.value, round.doubts.size() == 1 ? "the warning" : "the warnings",
+                       round.doubts.size() == 1 ? "is" : "are");
   }
   const std::string limit =
       fmt::format("three standard errors of a centre, {:#.2g} m", 3.0 * clusters.sem);
@@ -38,7 +39,8 @@ std::string corrections_text(const SquareRound& round, SquareMethod method, Text
   row("wheelbase", use.wheelbase, "m");
   row("left wheel's travel times", use.left_factor, "");
   row("right wheel's travel times", use.right_factor, "");
-  return fmt::format("\n  Use from now on ({}):\n{}",
+  return fmt::format("\n  {} ({}):\n{}",
+                     round.doubts.empty() ? "Use from now on" : "What the runs come to as they are",
                      method == SquareMethod::exact ? "exact solution" : "the papers' formulas",
                      table_text(table, style));
 }
@@ -122,6 +124,11 @@ std::string one_way_text(const SquareRound& round) {
 
 }  // namespace
 
+std::string_view square_verdict(const SquareRound& round) {
+  if (!round.doubts.empty()) return "doubtful";
+  return round.clusters.second_round_worthwhile ? "worth correcting" : "nothing left to correct";
+}
+
 std::string paths_alone_text(const std::vector<PathAlone>& paths, TextStyle style) {
   if (paths.empty()) return "";
   TextTable table;
@@ -140,9 +147,9 @@ std::string paths_alone_text(const std::vector<PathAlone>& paths, TextStyle styl
 
 std::string square_text(const std::vector<SquareRound>& rounds, SquareMethod method,
                         TextStyle style) {
+  const bool good = rounds.back().doubts.empty() && !rounds.back().clusters.second_round_worthwhile;
   std::string out =
-      verdict_text(rounds.back().clusters.second_round_worthwhile ? Mood::doubt : Mood::good,
-                   verdict(rounds.back(), rounds.size()), style);
+      verdict_text(good ? Mood::good : Mood::doubt, verdict(rounds.back(), rounds.size()), style);
   if (rounds.size() > 1) {
     TextTable table{{Align::left, Align::right, Align::left, Align::left}, {}, false, 2};
     for (std::size_t k = 0; k < rounds.size(); ++k) {
@@ -160,7 +167,8 @@ std::string square_text(const std::vector<SquareRound>& rounds, SquareMethod met
   }
   out += corrections_text(last, method, style) + scale_text(rounds.front().setup.scale) +
          solutions_text(last, style) + clusters_text(last, style);
-  if (rounds.size() == 1 && last.clusters.second_round_worthwhile) out += one_way_text(last);
+  const bool sure = last.doubts.empty() && last.clusters.second_round_worthwhile;
+  if (rounds.size() == 1 && sure) out += one_way_text(last);
   return out + warnings_text(all_doubts(rounds), style);
 }
 

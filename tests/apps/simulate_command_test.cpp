@@ -124,11 +124,73 @@ TEST(SimulateCommand, HidingWithoutASeedDrawsOneAndSaysWhich) {
   EXPECT_NE(a.output.find("--seed " + seed.dump() + ","), std::string::npos) << a.output;
   const Ran again = run_trussmap(simulate + "c --seed " + seed.dump());
   ASSERT_EQ(again.status, 0);
-  EXPECT_EQ(again.output.find("--seed"), std::string::npos) << again.output;
+  EXPECT_EQ(again.output.find("They were drawn"), std::string::npos) << again.output;
   auto files = scratch.contents();
   EXPECT_EQ(files.at("a/drive.csv"), files.at("c/drive.csv"));
   EXPECT_EQ(files.at("a/truth.json"), files.at("c/truth.json"));
   EXPECT_NE(files.at("a/drive.csv"), files.at("b/drive.csv"));
+}
+
+TEST(SimulateCommand, WhatWasFoundOfTheHiddenIsScored) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  const Ran made = run_trussmap("simulate --mesh 4x4 --seed 11 --hide --out=" + at + "r-2");
+  ASSERT_EQ(made.status, 0) << made.output;
+  EXPECT_NE(made.output.find("  Try another: trussmap simulate --mesh 4x4 --hide --seed 12 --out " +
+                             at + "r-3\n"),
+            std::string::npos)
+      << made.output;
+  ASSERT_EQ(run_trussmap("reveal " + at + "r-2 --json " + at + "a.json").status, 0);
+  const json truth = read_json(scratch.path() / "a.json")["effects"];
+  // The true model, once fitted, and one effect too many.
+  std::string model = scratch.contents().at("r-2/model.toml");
+  for (const json& one : truth) {
+    model += "\n[[effect]]\nname = " + one["name"].dump() + "\nchannel = " + one["channel"].dump() +
+             "\nshape = " + one["shape"].dump() + "\n";
+  }
+  model += "\n[[effect]]\nname = \"mine\"\nchannel = \"wheels\"\nshape = [\"t\"]\n";
+  scratch.write("m.toml", model);
+  const std::string folder = at + "r-2 ";
+  ASSERT_EQ(run_trussmap("fit " + folder + "--model " + at + "m.toml --out " + at +
+                         "f.toml --json " + at + "f.json")
+                .status,
+            0);
+  const Ran scored =
+      run_trussmap("reveal " + folder + "--model " + at + "f.toml --json " + at + "s.json");
+  ASSERT_EQ(scored.status, 0) << scored.output;
+  const json score = read_json(scratch.path() / "s.json")["score"];
+  EXPECT_EQ(score["found"], truth.size());
+  EXPECT_EQ(score["missed"], 0);
+  EXPECT_EQ(score["false"], 1);
+  const json fitted = read_json(scratch.path() / "f.json")["effects"];
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    const json& row = score["effects"][k];
+    EXPECT_EQ(row["outcome"], "found");
+    const double sd = row["sd"][0].get<double>();
+    EXPECT_NEAR(sd, fitted[k]["sd"][0].get<double>(), 1e-3 * sd);
+    EXPECT_NEAR(row["z"][0].get<double>(),
+                (row["estimate"][0].get<double>() - row["truth"][0].get<double>()) / sd, 1e-9);
+    EXPECT_LT(std::abs(row["z"][0].get<double>()), 4.0) << scored.output;
+  }
+  EXPECT_EQ(score["effects"].back()["outcome"], "false");
+  // The nominal model has nothing of it.
+  const Ran none = run_trussmap("reveal " + folder + "--model " + at + "r-2/model.toml");
+  EXPECT_EQ(
+      none.output.rfind("score: 0 found, " + std::to_string(truth.size()) + " missed, 0 false", 0),
+      0U)
+      << none.output;
+}
+
+/// As files were sealed before they were encrypted: {"seed":1,"effects":[]}.
+TEST(SimulateCommand, AnEarlierAnswerStillOpens) {
+  const ScratchFolder scratch;
+  scratch.write("r/truth.json",
+                "{\"note\": \"\", \"sealed\": \"eyJzZWVkIjoxLCJlZmZlY3RzIjpbXX0=\", \"checksum\": "
+                "\"05ce92d4ad82e80f\"}");
+  const std::string at = scratch.path().string();
+  const Ran ran = run_trussmap("reveal " + at + "/r --json " + at + "/a.json");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  EXPECT_EQ(read_json(scratch.path() / "a.json")["seed"], 1);
 }
 
 TEST(SimulateCommand, AnAnswerGoesWithItsRecordingAndAgainstTampering) {

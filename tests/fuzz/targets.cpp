@@ -189,6 +189,7 @@ void fuzz_runs(std::string_view bytes) {
   const fs::path file = folder().write("runs.csv", bytes);
   may_refuse([&file] { static_cast<void>(read_square_runs(file, 16.0)); });
   may_refuse([&file] { static_cast<void>(read_end_errors(file, 16.0)); });
+  may_refuse([&file] { static_cast<void>(read_taped_runs(file)); });
 }
 
 void fuzz_words(std::string_view bytes) {
