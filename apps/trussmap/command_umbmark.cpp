@@ -3,6 +3,7 @@
 //
 // trussmap umbmark: wheel diameters and wheelbase from squares driven both ways.
 #include "commands.hpp"
+#include "json_values.hpp"
 #include "option_checks.hpp"
 #include "tape_options.hpp"
 #include "terminal.hpp"
@@ -27,6 +28,7 @@ namespace trussmap::app {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::ordered_json;
 
 struct UmbmarkOptions {
   std::vector<std::string> files;
@@ -181,17 +183,19 @@ fs::path round_file(const fs::path& first, std::size_t round) {
 }
 
 void run_umbmark(const UmbmarkOptions& options) {
-  Model model = starting_model(options.tape);
+  const Model model = starting_model(options.tape);
   const std::vector<SquareRound> rounds = all_rounds(options, model);
   const std::vector<PathAlone> alone = paths_alone(options, rounds.back());
+  const RobotConstants constants = robot_constants(model, rounds, method_of(options));
   Files files;
   if (!options.tape.out.empty()) {
-    set_geometry_errors(model, corrections_after(rounds.back(), method_of(options)).errors);
-    files.emplace_back(options.tape.out, format_model(model));
+    const SquareCorrections use = corrections_after(rounds.back(), method_of(options));
+    files.emplace_back(options.tape.out, format_model(with_geometry(model, use.errors)));
   }
   if (!options.tape.json.empty()) {
-    files.emplace_back(options.tape.json,
-                       umbmark_json(rounds, method_of(options), alone).dump(2) + "\n");
+    ordered_json report = umbmark_json(rounds, method_of(options), alone);
+    add_constants(constants, report);
+    files.emplace_back(options.tape.json, report.dump(2) + "\n");
   }
   if (!options.tape.page.plots.empty()) {
     std::vector<SquareRuns> runs;
@@ -200,14 +204,16 @@ void run_umbmark(const UmbmarkOptions& options) {
     files.add_plot(options.tape.page.plots, "umbmark.svg", square_picture(runs, options.side));
   }
   if (!options.tape.page.html.empty()) {
-    add_page(files, page_of(rounds, options), {options.tape.page.html, {}});
+    add_page(files, with_constants(page_of(rounds, options), constants),
+             {options.tape.page.html, {}});
   }
   for (std::size_t k = 0; k < rounds.size() && !options.tape.write.empty(); ++k) {
     files.emplace_back(round_file(options.tape.write, k), format_square_runs(rounds[k].runs));
   }
   files.write();
-  fmt::print("{}{}", square_text(rounds, method_of(options), style_of(stdout)),
-             paths_alone_text(alone, style_of(stdout)));
+  fmt::print("{}{}{}", square_text(rounds, method_of(options), style_of(stdout)),
+             paths_alone_text(alone, style_of(stdout)),
+             constants_text(constants, style_of(stdout)));
 }
 
 constexpr const char* kSquareFooter =

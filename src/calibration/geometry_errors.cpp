@@ -97,6 +97,13 @@ void set_geometry_errors(Model& model, const GeometryErrors& errors) {
   }
 }
 
+Model with_geometry(Model model, const GeometryErrors& errors) {
+  model.robot.wheelbase *= errors.wheelbase_ratio;
+  model.robot.wheelbase_stated = true;
+  set_geometry_errors(model, {errors.diameter_ratio, 1.0, errors.scale});
+  return model;
+}
+
 PathError path_error(const TestPath& path, double wheelbase, const GeometryErrors& errors) {
   using Row2 = Eigen::RowVector2d;
   const double b = wheelbase * errors.wheelbase_ratio;
