@@ -226,7 +226,7 @@ constexpr const char* kSquareFooter =
     "Several rounds: give their files in the order driven. Each was driven with the corrections\n"
     "that all files before it call for; what to use from now on is their product. --model gives\n"
     "corrections that were in force from the start (its effects wheelbase, wheel diameter ratio\n"
-    "and wheel scale).\n\n"
+    "and wheel scale). --out has the wheelbase in [robot], the wheels as effects.\n\n"
     "A closed path closes at any size of the wheels, so that squares say nothing of their mean:\n"
     "--straight does. Wheelbase and travel factors then hold it as well.";
 

@@ -109,6 +109,7 @@ class PasteConstants : public ::testing::Test {
  protected:
   /// `effects`: names, fitted by the command.
   void start(const DrawnRobot& robot, const std::string& effects = "") {
+    std::filesystem::remove_all(drive_);
     write_recording(drive_, testing::draw(testing::figure(), robot, 7));
     std::filesystem::remove(drive_ / "sightings.csv");
     scratch_.write("m.toml",
@@ -201,7 +202,9 @@ TEST_F(PasteConstants, OneWheelIsSaidToBeOne) {
   EXPECT_EQ(ran_.output.find("than nominal; the"), std::string::npos) << ran_.output;
 }
 
-TEST_F(PasteConstants, OfDiscoverAndDiagnoseAreRight) {
+class SlowPasteConstants : public PasteConstants {};
+
+TEST_F(SlowPasteConstants, OfDiscoverAndDiagnoseAreRight) {
   start(worn());
   expect_right(found_by("discover"), worn());
   const json predicted = found_by("diagnose");
