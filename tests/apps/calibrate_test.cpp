@@ -108,8 +108,10 @@ TEST(CalibrateCommand, WritesWhatTheFormatsPromise) {
   const json same = read_json(scratch.path() / "again.json");
   for (const char* key : {"E_d", "E_b", "E_s", "k_left", "k_right"}) {
     const double same_one = key == std::string("E_b") ? 1.0 : found[key].get<double>();
+    // The noise turns by the wheelbase, which is another one now: k goes with it by 3 % at most.
+    const double share = *key == 'k' ? 0.3 : 0.1;
     EXPECT_NEAR(same[key].get<double>(), same_one,
-                0.1 * found[std::string("sd_") + key].get<double>())
+                share * found[std::string("sd_") + key].get<double>())
         << key;
   }
 }
