@@ -3,12 +3,15 @@
 #include "bench_exports.hpp"
 
 #include "page_runtime.hpp"
+#include "trussmap/calibrate.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
+#include "trussmap/texts.hpp"
 
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -127,6 +130,34 @@ std::string odometry(const BenchView& view) {
                         fmt::join(std::vector<std::string>(covariates.size(), "0.0"), ", ")));
 }
 
+/// What the model has by now, beside the one given.
+RobotConstants constants_of(const BenchView& view) {
+  const ModelFit& fit = view.now.fit();
+  return with_velocity_variances(robot_constants(view.log.steps.front().model, fit),
+                                 view.now.recordings(), fit.model);
+}
+
+/// A file of TOML: what is for other programs is a comment in it.
+std::string constants_file(const RobotConstants& constants) {
+  if (constants.empty()) {
+    return constants.others.empty()
+               ? "# the model has no effect\n"
+               : fmt::format("# no constant undoes {}\n", fmt::join(constants.others, ", "));
+  }
+  const std::string text = constants_text(constants);
+  std::istringstream lines(text);
+  std::string result;
+  bool toml = true;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty()) continue;
+    const bool inside = line.starts_with("  ");
+    if (!inside) toml = line.starts_with("Constants");
+    line.erase(0, inside && toml ? 2 : 0);
+    result += (inside && toml ? "" : "# ") + line + "\n";
+  }
+  return result;
+}
+
 }  // namespace
 
 std::optional<LocalReply> bench_export(const std::string& name, const BenchView& view,
@@ -134,12 +165,17 @@ std::optional<LocalReply> bench_export(const std::string& name, const BenchView&
   const char* text = "text/plain; charset=utf-8";
   if (name == "model.toml") return LocalReply{200, text, format_model(view.now.fit().model), name};
   if (name == "commands.sh") return LocalReply{200, text, commands(view, origin), name};
+  if (name == "constants.toml") {
+    return LocalReply{200, text, constants_file(constants_of(view)), name};
+  }
   if (name == "odometry.cpp") return LocalReply{200, text, odometry(view), name};
   if (name != "report.html") return std::nullopt;
-  const Page page = diagnosis_page(
-      view.now.diagnosis(),
-      evidence_of(view.now.recordings(), view.now.fit(), view.now.diagnosis(), view.now.options()),
-      subject_of(origin.recordings, origin.model));
+  const Page page =
+      with_constants(diagnosis_page(view.now.diagnosis(),
+                                    evidence_of(view.now.recordings(), view.now.fit(),
+                                                view.now.diagnosis(), view.now.options()),
+                                    subject_of(origin.recordings, origin.model)),
+                     constants_of(view));
   return LocalReply{200, "text/html; charset=utf-8", render_page(page, page_runtime()), name};
 }
 

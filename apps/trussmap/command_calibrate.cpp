@@ -4,6 +4,7 @@
 // trussmap calibrate: wheels, wheelbase and wheel noise from recordings with truth, fixes or a
 // survey.
 #include "commands.hpp"
+#include "json_values.hpp"
 #include "model_recordings.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
@@ -105,7 +106,7 @@ ordered_json json_of(const WheelCalibration& found, const CalibrationValidation&
     for (const DriveConstant& one : found.constants) {
       constants[std::string(name_of(one.channel))] = {{"g", one.g.value}, {"sd", one.g.sd}};
     }
-    out["constants"] = constants;
+    out["drive_constants"] = constants;
   }
   out["chi2"] = found.chi2;
   out["dof"] = found.dof;
@@ -156,22 +157,27 @@ void run_calibrate(const CalibrateOptions& options) {
   } catch (const std::invalid_argument& error) {
     throw InputError(options.model, 0, error.what());
   }
+  const RobotConstants constants =
+      with_velocity_variances(robot_constants(model, found), recordings, found.model);
   Files files;
-  if (!options.out.empty()) files.emplace_back(options.out, format_model(found.model));
+  if (!options.out.empty()) {
+    files.emplace_back(options.out, format_model(with_wheelbase_in_robot(found.model)));
+  }
   if (!options.json.empty()) {
-    files.emplace_back(options.json, json_of(found, held, test).dump(2) + "\n");
+    ordered_json report = json_of(found, held, test);
+    add_constants(constants, report);
+    files.emplace_back(options.json, report.dump(2) + "\n");
   }
   if (options.page.wanted()) {
-    add_page(
-        files,
-        with_drive(truth_page({found, held.nominal, held.calibrated, calibration_verdict(held)},
-                              subject_of(options.recordings, options.model)),
-                   model.robot, recordings),
-        options.page);
+    const Page page = truth_page({found, held.nominal, held.calibrated, calibration_verdict(held)},
+                                 subject_of(options.recordings, options.model));
+    add_page(files, with_drive(with_constants(page, constants), model.robot, recordings),
+             options.page);
   }
   files.write();
   progress.end();
-  fmt::print("{}", calibration_text(found, held, test, style_of(stdout)));
+  fmt::print("{}{}", calibration_text(found, held, test, style_of(stdout)),
+             constants_text(constants, style_of(stdout)));
 }
 
 }  // namespace
@@ -212,8 +218,9 @@ void setup_calibrate(const Command& app) {
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
   command.footer(
-      "E_d, E_b and E_s become the model's effects wheel diameter ratio, wheelbase and wheel\n"
-      "scale. Standard errors hold for the noise that the model states for truth, survey and\n"
+      "E_d and E_s become the model's effects wheel diameter ratio and wheel scale, E_b its\n"
+      "wheelbase in [robot]. Standard errors hold for the noise that the model states for truth, "
+      "survey and\n"
       "sightings; chi2/dof should be near 1. Where truth and fixes track the robot, and how "
       "late, is\n"
       "found too.\n"

@@ -111,25 +111,28 @@ void run_diagnose(const DiagnoseCommand& options) {
   const Diagnosis result = diagnose(input.recordings, fit, how);
   const std::vector<NoiseBudget> budget =
       noise_budget(input.recordings, result.under ? result.under->fit.model : fit.model);
+  const RobotConstants constants =
+      with_velocity_variances(robot_constants(result, fit.model), input.recordings, fit.model);
   Files files;
   if (!options.input.json.empty()) {
     ordered_json report = json_of(result);
+    add_constants(constants, report);
     report["noise_budget"] = budget_json(budget);
     report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   progress.next();
   if (options.page.wanted()) {
+    const Page page = diagnosis_page(result, evidence_of(input.recordings, fit, result, how),
+                                     subject_of(options.input.recordings, options.input.model));
     add_page(files,
-             with_drive(diagnosis_page(result, evidence_of(input.recordings, fit, result, how),
-                                       subject_of(options.input.recordings, options.input.model)),
-                        input.model.robot, input.recordings),
+             with_drive(with_constants(page, constants), input.model.robot, input.recordings),
              options.page);
   }
   files.write();
   progress.end();
-  fmt::print("{}{}", diagnosis_text(result, budget, options.list, style_of(stdout)),
-             notes_text(input.notes));
+  fmt::print("{}{}{}", diagnosis_text(result, budget, options.list, style_of(stdout)),
+             constants_text(constants, style_of(stdout)), notes_text(input.notes));
 }
 
 }  // namespace

@@ -112,25 +112,28 @@ void run_discover(const DiscoverCommand& options) {
   const Discovery result = discover(input.recordings, input.model, how);
   told.page();
   const std::vector<NoiseBudget> budget = noise_budget(input.recordings, result.found.model);
+  const RobotConstants constants = with_velocity_variances(robot_constants(result, input.model),
+                                                           input.recordings, result.found.model);
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.found.model));
   if (!options.input.json.empty()) {
     ordered_json report = json_of(result);
+    add_constants(constants, report);
     report["noise_budget"] = budget_json(budget);
     report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   if (options.page.wanted()) {
+    const Page page = discovery_page(result, evidence_of(input.recordings, result, how.diagnosis),
+                                     subject_of(options.input.recordings, options.input.model));
     add_page(files,
-             with_drive(discovery_page(result, evidence_of(input.recordings, result, how.diagnosis),
-                                       subject_of(options.input.recordings, options.input.model)),
-                        input.model.robot, input.recordings),
+             with_drive(with_constants(page, constants), input.model.robot, input.recordings),
              options.page);
   }
   files.write();
   told.end();
-  fmt::print("{}{}", discovery_text(result, input.model.noise, budget, style_of(stdout)),
-             notes_text(input.notes));
+  fmt::print("{}{}{}", discovery_text(result, input.model.noise, budget, style_of(stdout)),
+             constants_text(constants, style_of(stdout)), notes_text(input.notes));
 }
 
 }  // namespace

@@ -99,10 +99,13 @@ void run_fit(const FitCommand& options) {
     model.noise = noise->noise;
   }
   const EffectGain result = fit_both(input, model, options, progress);
+  const RobotConstants constants = with_velocity_variances(
+      robot_constants(input.model, result.with), input.recordings, result.with.model);
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.with.model));
   if (!options.input.json.empty()) {
     ordered_json report = json_of(result);
+    add_constants(constants, report);
     if (noise) report["noise"] = noise_json(*noise);
     report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");
@@ -112,12 +115,15 @@ void run_fit(const FitCommand& options) {
     FitEvidence evidence = evidence_of(input.recordings, result, compare_options(options.input));
     if (noise) evidence.noise = in_words(*noise);
     const std::string subject = subject_of(options.input.recordings, options.input.model);
-    add_page(files, with_drive(fit_page(evidence, subject), input.model.robot, input.recordings),
+    add_page(files,
+             with_drive(with_constants(fit_page(evidence, subject), constants), input.model.robot,
+                        input.recordings),
              options.page);
   }
   files.write();
   progress.end();
-  fmt::print("{}{}", fit_text(result, noise, style_of(stdout)), notes_text(input.notes));
+  fmt::print("{}{}{}", fit_text(result, noise, style_of(stdout)),
+             constants_text(constants, style_of(stdout)), notes_text(input.notes));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 //
 // trussmap umbmark: wheel diameters and wheelbase from squares driven both ways.
 #include "commands.hpp"
+#include "json_values.hpp"
 #include "option_checks.hpp"
 #include "tape_options.hpp"
 #include "terminal.hpp"
@@ -27,6 +28,7 @@ namespace trussmap::app {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::ordered_json;
 
 struct UmbmarkOptions {
   std::vector<std::string> files;
@@ -182,17 +184,19 @@ fs::path round_file(const fs::path& first, std::size_t round) {
 }
 
 void run_umbmark(const UmbmarkOptions& options) {
-  Model model = starting_model(options.tape);
+  const Model model = starting_model(options.tape);
   const std::vector<SquareRound> rounds = all_rounds(options, model);
   const std::vector<PathAlone> alone = paths_alone(options, rounds.back());
+  const RobotConstants constants = robot_constants(model, rounds, method_of(options));
   Files files;
   if (!options.tape.out.empty()) {
-    set_geometry_errors(model, corrections_after(rounds.back(), method_of(options)).errors);
-    files.emplace_back(options.tape.out, format_model(model));
+    const SquareCorrections use = corrections_after(rounds.back(), method_of(options));
+    files.emplace_back(options.tape.out, format_model(with_geometry(model, use.errors)));
   }
   if (!options.tape.json.empty()) {
-    files.emplace_back(options.tape.json,
-                       umbmark_json(rounds, method_of(options), alone).dump(2) + "\n");
+    ordered_json report = umbmark_json(rounds, method_of(options), alone);
+    add_constants(constants, report);
+    files.emplace_back(options.tape.json, report.dump(2) + "\n");
   }
   if (!options.tape.page.plots.empty()) {
     std::vector<SquareRuns> runs;
@@ -201,14 +205,16 @@ void run_umbmark(const UmbmarkOptions& options) {
     files.add_plot(options.tape.page.plots, "umbmark.svg", square_picture(runs, options.side));
   }
   if (!options.tape.page.html.empty()) {
-    add_page(files, page_of(rounds, options), {options.tape.page.html, {}});
+    add_page(files, with_constants(page_of(rounds, options), constants),
+             {options.tape.page.html, {}});
   }
   for (std::size_t k = 0; k < rounds.size() && !options.tape.write.empty(); ++k) {
     files.emplace_back(round_file(options.tape.write, k), format_square_runs(rounds[k].runs));
   }
   files.write();
-  fmt::print("{}{}", square_text(rounds, method_of(options), style_of(stdout)),
-             paths_alone_text(alone, style_of(stdout)));
+  fmt::print("{}{}{}", square_text(rounds, method_of(options), style_of(stdout)),
+             paths_alone_text(alone, style_of(stdout)),
+             constants_text(constants, style_of(stdout)));
 }
 
 constexpr const char* kSquareFooter =
@@ -222,7 +228,7 @@ constexpr const char* kSquareFooter =
     "Several rounds: give their files in the order driven. Each was driven with the corrections\n"
     "that all files before it call for; what to use from now on is their product. --model gives\n"
     "corrections that were in force from the start (its effects wheelbase, wheel diameter ratio\n"
-    "and wheel scale).\n\n"
+    "and wheel scale). --out has the wheelbase in [robot], the wheels as effects.\n\n"
     "A closed path closes at any size of the wheels, so that squares say nothing of their mean:\n"
     "--straight does. Wheelbase and travel factors then hold it as well.";
 

@@ -56,4 +56,25 @@ ordered_json estimate_json(const EffectEstimate& estimate) {
   return one;
 }
 
+void add_constants(const RobotConstants& constants, ordered_json& report) {
+  report["constants"] = ordered_json::array();
+  for (const RobotConstant& one : constants.list) {
+    report["constants"].push_back(
+        {{"name", one.name},
+         {"old", one.before},
+         {"new", one.determined ? ordered_json(one.after) : ordered_json()},
+         {"sd", one.determined && one.sd > 0.0 ? ordered_json(one.sd) : ordered_json()},
+         {"unit", one.unit},
+         {"note", one.note}});
+  }
+  report["stacks"] = ordered_json::array();
+  for (const StackValue& one : constants.stacks) {
+    report["stacks"].push_back({{"stack", one.stack},
+                                {"key", one.key},
+                                {"value", one.value},
+                                {"multiplies", one.multiplies},
+                                {"note", one.note}});
+  }
+}
+
 }  // namespace trussmap::app

@@ -4,6 +4,7 @@
 // What several commands write into their JSON.
 #pragma once
 
+#include "trussmap/calibrate.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/fit_model.hpp"
 #include "trussmap/held_out.hpp"
@@ -26,5 +27,8 @@ namespace trussmap::app {
 [[nodiscard]] nlohmann::ordered_json held_out_json(const HeldOut& held_out);
 /// Name, channel and shape with coefficients, standard errors and words.
 [[nodiscard]] nlohmann::ordered_json estimate_json(const EffectEstimate& estimate);
+
+/// Into a command's result, under `constants` and `stacks`.
+void add_constants(const RobotConstants& constants, nlohmann::ordered_json& report);
 
 }  // namespace trussmap::app

@@ -34,13 +34,17 @@
 // so it is refused, and the message says how the headings lie to the direction of travel.
 #pragma once
 
+#include "trussmap/fit_model.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
+#include "trussmap/umbmark.hpp"
 
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace trussmap {
 
@@ -102,6 +106,11 @@ struct WheelCalibration {
   /// False where the last round still moved an estimate by more than a tenth of its standard error:
   /// the recordings contradict wheels that differ in these figures alone, which then mean little.
   bool settled = true;
+  /// Of all that were determined, in the order in which they correct the wheels, one after the
+  /// other: channel, g with the shape 1, and the covariance of these.
+  std::vector<Channel> channels = {};
+  Eigen::VectorXd g = {};
+  Eigen::MatrixXd covariance = {};
   std::vector<std::string> undetermined;  ///< what was not determined, and why
 };
 
@@ -206,5 +215,101 @@ struct DriveError {
 /// Root mean squares over the drives, of which there is at least one.
 [[nodiscard]] double rms_end(const std::vector<DriveError>& errors);                ///< m
 [[nodiscard]] double rms_heading_per_metre(const std::vector<DriveError>& errors);  ///< rad/m
+
+// ----------------------------------------
+// Constants to paste: what was found, as numbers for the robot's own software, old and new.
+//
+//   effects with the shape 1, by channel --> sizes of wheels, wheelbase, a gyro's scale ...
+//
+// Effects act side by side (channel.hpp), so that the wheels k with travels w_k move the body by
+//
+//   ahead  sum a_k (c + g_k - m) w_k     c = 1 + g_wheels + g_travel + m
+//   turn   sum b_k (d + g_k - m) w_k     d = 1 + g_wheels + g_turn + m
+//
+//   g_k   left - difference/2, right + difference/2, or wheel k;   m   their mean
+//
+// A robot with the wheels' sizes c_k and its lengths (wheelbase, track, radius) times l turns by
+// sum b_k c_k w_k / l. So
+//
+//   l = c/d            turns more than its wheels say: d > 1, and the wheelbase is smaller
+//   c_k = c + l (g_k - m)
+//
+// which is right in every turn and in the mean travel. A travel scale of +2 % makes the wheels 1.02
+// times as large, and the wheelbase as well: the turns were right before.
+//
+// Errors are first order, with all covariances where the fit is known.
+
+/// A constant, in the words of the robot's software.
+struct RobotConstant {
+  std::string name;  ///< "left wheel", "wheelbase", "gyro bias"
+  /// "times" (a factor of what the recordings were made with: of a wheel, of its radius or of the
+  /// travel per tick), m, rad, s, rad/s, m^1/2.
+  std::string unit;
+  double before = 0.0;
+  double after = 0.0;  ///< meaningless where not determined
+  double sd = 0.0;     ///< standard error; 0: none is known
+  bool determined = true;
+  std::string note = {};  ///< how it is meant, or why it was not determined
+};
+
+/// A figure for another program's configuration.
+struct StackValue {
+  std::string stack;  ///< "ros2_controllers, diff_drive_controller"
+  std::string key;    ///< "wheel_separation_multiplier"
+  double value = 0.0;
+  bool multiplies = false;  ///< what is there is to be multiplied by it; else it takes its place
+  std::string note = {};
+};
+
+/// One wheel alone is larger or smaller, and explains all: the other one and the wheelbase are, by
+/// these data, what the model had.
+struct OneWheel {
+  bool left = true;
+  double larger = 0.0;   ///< by this share of the nominal size
+  double sd = 0.0;       ///< of that
+  double p_value = 1.0;  ///< of what contradicts it
+};
+
+struct RobotConstants {
+  std::vector<RobotConstant> list;  ///< none that the drive does not have or nobody asked for
+  std::vector<StackValue> stacks;   ///< of those that were determined; grouped
+  std::optional<OneWheel> one_wheel;
+  std::vector<std::string> others;  ///< effects that no constant undoes: they stay in the model
+  std::vector<std::string> doubts;  ///< what else it could be, a sentence each
+
+  [[nodiscard]] bool empty() const { return list.empty(); }
+};
+
+/// Of the effects that the fitted model has. `before`: the model as given, its own coefficients
+/// count as what was in force.
+[[nodiscard]] RobotConstants robot_constants(const Model& before, const ModelFit& after);
+
+/// Of these effects on the robot of `before`, taken for independent: what a diagnosis predicts.
+[[nodiscard]] RobotConstants robot_constants(const Model& before,
+                                             const std::vector<EffectEstimate>& after);
+
+/// Wheels, their noise, antenna and delays of a calibration from `before`.
+[[nodiscard]] RobotConstants robot_constants(const Model& before, const WheelCalibration& found);
+
+/// Of the last of these rounds. `before`: the model with what was in force in the first one.
+[[nodiscard]] RobotConstants robot_constants(const Model& before,
+                                             const std::vector<SquareRound>& rounds,
+                                             SquareMethod method);
+
+/// The same, and what robot_localization asks for: the variance of a velocity that is the motion of
+/// one row over its duration, (m/s)^2 and (rad/s)^2, mean over the rows that move. By the model's
+/// white noise of wheels, without the gyro. As it is without constants, and of recordings that do
+/// not move.
+[[nodiscard]] RobotConstants with_velocity_variances(RobotConstants constants,
+                                                     const std::vector<DrivenRecording>& recordings,
+                                                     const Model& model);
+
+/// A calibrated model for a file: its effect `wheelbase` in [robot], where the length that turns go
+/// by is divided by 1 + g, and the effect stays with 0, so that a fit shows what is left; the
+/// others that a calibration seeks as effects that act side by side, as a fit has them. Where the
+/// drive has no such length, or where more than turns goes by it (`wheels`; `ackermann` with a
+/// wheel off the middle), `wheelbase` stays an effect. Recordings of which the wheels were taken in
+/// by the robot as it was go on with the model as calibrated.
+[[nodiscard]] Model with_wheelbase_in_robot(Model model);
 
 }  // namespace trussmap

@@ -36,6 +36,8 @@
 
 namespace trussmap {
 
+struct RobotConstants;
+
 enum class Status { missing, absent, negligible, cannot_tell };
 
 /// chi^2 behind another from which on measurements tell two effects apart: odds of 400 to 1.
@@ -194,6 +196,11 @@ struct DiagnoseOptions {
 /// The same where the fit of these recordings is there already.
 [[nodiscard]] Diagnosis diagnose(const std::vector<DrivenRecording>& recordings,
                                  const ModelFit& fit, const DiagnoseOptions& options = {});
+
+/// What is missing as constants to paste, with all of it added at once, beside the model's effects
+/// as they were fitted: sizes by the score tests, their errors taken for independent. None where
+/// nothing is missing. `before`: the model that was diagnosed.
+[[nodiscard]] RobotConstants robot_constants(const Diagnosis& diagnosis, const Model& before);
 
 /// An unexplained misfit of chi^2 as a whole that noise alone makes in more than one of a thousand
 /// recordings: too little to prefer another model for.

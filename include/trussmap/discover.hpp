@@ -74,6 +74,9 @@ struct DiscoverOptions {
   std::function<void(const DiscoveryStage&)> progress = {};
 };
 
+/// What was found as constants to paste. `before`: the model given.
+[[nodiscard]] RobotConstants robot_constants(const Discovery& discovery, const Model& before);
+
 /// Throws like fit_model.
 [[nodiscard]] Discovery discover(const std::vector<DrivenRecording>& recordings, const Model& model,
                                  const DiscoverOptions& options = {});

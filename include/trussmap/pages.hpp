@@ -35,6 +35,7 @@ struct DiscoveryEvidence;
 struct FitEvidence;
 struct FleetReport;
 struct PageContent;
+struct RobotConstants;
 struct TourMap;
 struct TourResult;
 struct EffectPreview;
@@ -118,6 +119,9 @@ struct TruthCalibration {
 /// steered in these recordings (wheels taken in). Of two wheels the page as it is.
 [[nodiscard]] Page with_drive(const Page& page, const Robot& robot,
                               const std::vector<DrivenRecording>& recordings);
+
+/// The page with the constants to paste; without any the page as it is.
+[[nodiscard]] Page with_constants(const Page& page, const RobotConstants& constants);
 
 /// The page of a workbench: it asks the program that serves it for what it shows. Its content
 /// security policy lets this script run and no other, and ask no other program.

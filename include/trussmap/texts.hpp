@@ -112,6 +112,10 @@ struct TestedDrives {
 /// What the held-out legs say of a calibration, in a sentence: a page's verdict.
 [[nodiscard]] std::string calibration_verdict(const CalibrationValidation& held);
 
+/// Constants to paste: lines of TOML, then those of other programs; nothing where there are none.
+[[nodiscard]] std::string constants_text(const RobotConstants& constants,
+                                         TextStyle style = TextStyle::plain);
+
 /// Of the last round, with the systematic error of each.
 [[nodiscard]] std::string square_text(const std::vector<SquareRound>& rounds, SquareMethod method,
                                       TextStyle style = TextStyle::plain);

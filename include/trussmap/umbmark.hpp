@@ -102,6 +102,11 @@ struct GeometryErrors {
 /// or shape than these.
 [[nodiscard]] GeometryErrors geometry_errors(const Model& model);
 
+/// The model corrected by them: its wheelbase times E_b in [robot], the wheels' ratio and scale as
+/// effects, in place of what it said of them; an effect `wheelbase` that it had stays with 0, and
+/// there is one with 0 where it had none, so that a fit shows what is left.
+[[nodiscard]] Model with_geometry(Model model, const GeometryErrors& errors);
+
 /// Puts them into the model, in place of what it said of them; no `wheel scale` where it had none
 /// and E_s is 1.
 void set_geometry_errors(Model& model, const GeometryErrors& errors);

@@ -20,6 +20,7 @@ namespace trussmap {
 
 struct BuiltMap;
 struct FleetReport;
+struct OneWheel;
 struct Response;
 struct TrendEvidence;
 
@@ -28,6 +29,14 @@ struct TrendEvidence;
 /// "the wheelbase is 2.0 +- 0.1 % larger than nominal". `effect` has coefficients;
 /// `sd` as many standard errors (0 or infinite: none is given).
 [[nodiscard]] std::string in_words(const Effect& effect, const std::vector<double>& sd);
+
+/// "the left wheel is 0.96 +- 0.02 % larger than nominal; the right one and the wheelbase are as
+/// the model has them".
+[[nodiscard]] std::string in_words(const OneWheel& wheel);
+
+/// A fit's effects, each as "name: in words". Where one wheel explains ratio, wheelbase and scale
+/// alike (calibrate.hpp), one sentence on it in their place.
+[[nodiscard]] std::vector<std::string> effects_in_words(const ModelFit& fit);
 
 /// A name as a sentence has it: "slippery patch at x 12.3 m, y 9.8 m, radius 3.1 m" for
 /// "slippery patch (x=12.345, y=9.8, r=3.1)", "turning error with turn rate" for "turn with

@@ -15,6 +15,7 @@ namespace trussmap::python {
 namespace {
 
 struct CalibrationResult {
+  Model given;
   WheelCalibration found;
   CalibrationValidation held;
   std::optional<TestedDrives> test;
@@ -62,6 +63,7 @@ CalibrationResult run_calibrate(const py::object& recordings, const py::object& 
       result.mistakes.push_back(in_words(one));
     }
     result.robot = input.model.robot;
+    result.given = input.model;
     result.recordings = std::make_shared<const std::vector<DrivenRecording>>(
         with_wheels(std::move(input.recordings), input.model.robot));
     const std::vector<DrivenRecording>& used = *result.recordings;
@@ -112,15 +114,20 @@ py::list table(const CalibrationResult& self) {
   return rows;
 }
 
+RobotConstants constants(const CalibrationResult& self) {
+  return with_velocity_variances(robot_constants(self.given, self.found), *self.recordings,
+                                 self.found.model);
+}
+
 std::string text(const CalibrationResult& self) {
-  return calibration_text(self.found, self.held, self.test);
+  return calibration_text(self.found, self.held, self.test) + constants_text(constants(self));
 }
 
 Page page(const CalibrationResult& self) {
-  return with_drive(truth_page({self.found, self.held.nominal, self.held.calibrated,
-                                calibration_verdict(self.held)},
-                               self.subject),
-                    self.robot, *self.recordings);
+  const Page page = truth_page(
+      {self.found, self.held.nominal, self.held.calibrated, calibration_verdict(self.held)},
+      self.subject);
+  return with_drive(with_constants(page, constants(self)), self.robot, *self.recordings);
 }
 
 }  // namespace
@@ -131,9 +138,11 @@ void add_calibration(py::module_& module) {
       "Wheels, wheelbase and wheel noise; each constant with its "
       "standard error, None where the motion does not determine it.");
   show(type, text, page);
+  show_constants(type, constants);
   type.def_property_readonly(
-          "model", [](const CalibrationResult& self) { return self.found.model; },
-          doc("WheelCalibration.model"))
+          "model",
+          [](const CalibrationResult& self) { return with_wheelbase_in_robot(self.found.model); },
+          "The given one with all of that in it, the wheelbase in its robot.")
       .def_property_readonly(
           "E_d", [](const CalibrationResult& self) { return pair(self.found.diameter_ratio); },
           "Right over left wheel diameter.")

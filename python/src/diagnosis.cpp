@@ -50,8 +50,14 @@ DiagnosisResult run_diagnose(const py::object& recordings, const py::object& mod
   return result;
 }
 
+RobotConstants constants(const DiagnosisResult& self) {
+  return with_velocity_variances(robot_constants(self.found, self.fit.model),
+                                 *self.input.recordings, self.fit.model);
+}
+
 std::string text(const DiagnosisResult& self) {
-  return diagnosis_text(self.found, self.budget, self.list) + notes_text(self.input.notes);
+  return diagnosis_text(self.found, self.budget, self.list) + constants_text(constants(self)) +
+         notes_text(self.input.notes);
 }
 
 const DiagnosisEvidence& evidence(const DiagnosisResult& self) {
@@ -60,7 +66,8 @@ const DiagnosisEvidence& evidence(const DiagnosisResult& self) {
 }
 
 Page page(const DiagnosisResult& self) {
-  return with_drive(diagnosis_page(self.found, evidence(self), self.input.subject),
+  return with_drive(with_constants(diagnosis_page(self.found, evidence(self), self.input.subject),
+                                   constants(self)),
                     self.input.model.robot, *self.input.recordings);
 }
 
@@ -180,6 +187,7 @@ void add_diagnosis(py::module_& module) {
   add_rows(module);
   py::class_<DiagnosisResult> type(module, "Diagnosis", "Which physical effect is missing?");
   show(type, text, page);
+  show_constants(type, constants);
   show_responses(
       type, evidence,
       "What these recordings show of each effect that is missing, then errors against what "

@@ -83,9 +83,14 @@ DiscoveryResult run_discover(const py::object& recordings, const py::object& mod
   return result;
 }
 
+RobotConstants constants(const DiscoveryResult& self) {
+  return with_velocity_variances(robot_constants(self.found, self.input.model),
+                                 *self.input.recordings, self.found.found.model);
+}
+
 std::string text(const DiscoveryResult& self) {
   return discovery_text(self.found, self.input.model.noise, self.budget) +
-         notes_text(self.input.notes);
+         constants_text(constants(self)) + notes_text(self.input.notes);
 }
 
 const DiscoveryEvidence& evidence(const DiscoveryResult& self) {
@@ -94,7 +99,8 @@ const DiscoveryEvidence& evidence(const DiscoveryResult& self) {
 }
 
 Page page(const DiscoveryResult& self) {
-  return with_drive(discovery_page(self.found, evidence(self), self.input.subject),
+  return with_drive(with_constants(discovery_page(self.found, evidence(self), self.input.subject),
+                                   constants(self)),
                     self.input.model.robot, *self.input.recordings);
 }
 
@@ -150,6 +156,7 @@ void add_discovery(py::module_& module) {
                                    "Effects diagnosed, added and fitted for as long as that is "
                                    "justified.");
   show(type, text, page);
+  show_constants(type, constants);
   show_responses(
       type, evidence,
       "What these recordings show of each effect found, then errors against what they still go "

@@ -74,8 +74,14 @@ FitResult run_fit(const py::object& recordings, const py::object& model, bool no
   return result;
 }
 
+RobotConstants constants(const FitResult& self) {
+  return with_velocity_variances(robot_constants(self.input.model, self.gain.with),
+                                 *self.input.recordings, self.gain.with.model);
+}
+
 std::string text(const FitResult& self) {
-  return fit_text(self.gain, self.noise) + notes_text(self.input.notes);
+  return fit_text(self.gain, self.noise) + constants_text(constants(self)) +
+         notes_text(self.input.notes);
 }
 
 const FitEvidence& evidence(const FitResult& self) {
@@ -88,8 +94,8 @@ const FitEvidence& evidence(const FitResult& self) {
 }
 
 Page page(const FitResult& self) {
-  return with_drive(fit_page(evidence(self), self.input.subject), self.input.model.robot,
-                    *self.input.recordings);
+  return with_drive(with_constants(fit_page(evidence(self), self.input.subject), constants(self)),
+                    self.input.model.robot, *self.input.recordings);
 }
 
 py::list table(const FitResult& self, const std::string& what) {
@@ -209,6 +215,7 @@ void add_fits(py::module_& module) {
   py::class_<FitResult> type(module, "Fit",
                              "A model's effects fitted, beside the model without them.");
   show(type, text, page);
+  show_constants(type, constants);
   show_responses(type, evidence, "What these recordings show of each effect: bins and curves.");
   type.def_property_readonly(
           "model", [](const FitResult& self) { return self.gain.with.model; },

@@ -6,6 +6,7 @@
 
 #include "calls.hpp"
 #include "inputs.hpp"
+#include "trussmap/calibrate.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/write_files.hpp"
 
@@ -67,6 +68,29 @@ void show(py::class_<Result>& type, std::string (*text)(const Result&),
             return charts;
           },
           "The page's charts by name, as SVG files' text.");
+}
+
+/// Constants to paste. `constants` touches no Python.
+template <typename Result>
+void show_constants(py::class_<Result>& type, RobotConstants (*constants)(const Result&)) {
+  type.def_property_readonly(
+      "robot_constants",
+      [constants](const Result& self) {
+        py::list rows;
+        for (const RobotConstant& one : unlocked([&] { return constants(self); }).list) {
+          py::dict row;
+          row["name"] = one.name;
+          row["old"] = one.before;
+          row["new"] = one.determined ? py::object(py::float_(one.after)) : py::object(py::none());
+          row["sd"] = one.determined && one.sd > 0.0 ? py::object(py::float_(one.sd))
+                                                     : py::object(py::none());
+          row["unit"] = one.unit;
+          row["note"] = one.note;
+          rows.append(row);
+        }
+        return rows;
+      },
+      "Constants to paste into the robot's software, a dict each: name, old, new, sd, unit, note.");
 }
 
 }  // namespace trussmap::python

@@ -57,6 +57,7 @@ SquareRuns runs_of(py::handle value, double side) {
 struct SquareResult {
   std::vector<SquareRound> rounds;
   SquareMethod method = SquareMethod::exact;
+  Model given;
   Model model;
   double side = 4.0;
 
@@ -84,7 +85,8 @@ SquareResult run_umbmark(const py::args& runs, const py::object& wheelbase, doub
   result.rounds = square_rounds(
       all.size(), side, result.model.robot.wheelbase, geometry_errors(result.model), result.method,
       [&all](std::size_t round, const SquareSetup&, const GeometryErrors&) { return all[round]; });
-  set_geometry_errors(result.model, result.corrections().errors);
+  result.given = result.model;
+  result.model = with_geometry(result.given, result.corrections().errors);
   return result;
 }
 
@@ -108,15 +110,20 @@ py::list table(const SquareResult& self) {
   return rows;
 }
 
+RobotConstants squares_constants(const SquareResult& self) {
+  return robot_constants(self.given, self.rounds, self.method);
+}
+
 std::string squares_text(const SquareResult& self) {
-  return square_text(self.rounds, self.method);
+  return square_text(self.rounds, self.method) + constants_text(squares_constants(self));
 }
 
 Page squares_page(const SquareResult& self) {
   const SquareCorrections use = self.corrections();
-  return square_page({self.rounds, self.side, use.wheelbase, use.left_factor, use.right_factor,
-                      all_doubts(self.rounds)},
-                     "squares");
+  return with_constants(square_page({self.rounds, self.side, use.wheelbase, use.left_factor,
+                                     use.right_factor, all_doubts(self.rounds)},
+                                    "squares"),
+                        squares_constants(self));
 }
 
 py::tuple pair(const Estimate& one) {
@@ -128,6 +135,7 @@ void add_squares_class(py::module_& module) {
                                 "Wheel diameters and wheelbase from squares; constants with their "
                                 "standard errors, corrections of all rounds together.");
   show(type, squares_text, squares_page);
+  show_constants(type, squares_constants);
   type.def_property_readonly(
           "E_d", [](const SquareResult& self) { return pair(self.solution().diameter_ratio); },
           "Right over left wheel diameter, of the last round.")

@@ -129,6 +129,13 @@ void set_taped(Model& model, const TapeCalibration& found) {
   }
 }
 
+Model with_geometry(Model model, const GeometryErrors& errors) {
+  model.robot.wheelbase *= errors.wheelbase_ratio;
+  model.robot.wheelbase_stated = true;
+  set_geometry_errors(model, {errors.diameter_ratio, 1.0, errors.scale});
+  return model;
+}
+
 PathError path_error(const TestPath& path, double wheelbase, const GeometryErrors& errors) {
   using Row2 = Eigen::RowVector2d;
   const double b = wheelbase * errors.wheelbase_ratio;

@@ -80,6 +80,11 @@ SoughtConstant steering_gain_constant() {
 
 }  // namespace
 
+double SoughtConstant::slope(double g) const {
+  constexpr double kStep = 1e-6;
+  return (joined(g, kStep) - joined(g, -kStep)) / (2.0 * kStep);
+}
+
 std::vector<SoughtConstant> sought_constants(const Robot& robot) {
   switch (robot.drive) {
     case DriveKind::differential:

@@ -33,6 +33,8 @@ struct SoughtConstant {
   /// What was found on corrected rows, more, beside what was in force: of a reading, which stays as
   /// it is, or beside it.
   double (*joined)(double g, double more) = [](double g, double more) { return g + more; };
+  /// How much more of g a little more of `more` is.
+  [[nodiscard]] double slope(double g) const;
 };
 
 /// In the order in which their values stand everywhere.

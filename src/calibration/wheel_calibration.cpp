@@ -130,6 +130,26 @@ Wanted determined(const std::vector<DrivenRecording>& recordings, const Model& m
   return wanted;
 }
 
+/// The determined constants as effects, with their covariance.
+void keep_covariance(WheelCalibration& result, const std::vector<double>& g, const Wanted& wanted,
+                     const RecordingAdjustment& adjustment) {
+  const std::vector<SoughtConstant> constants = sought_constants(result.model.robot);
+  std::vector<double> found;
+  std::vector<double> slopes;
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (!wanted[k]) continue;
+    result.channels.push_back(constants[k].channel);
+    found.push_back(g[k]);
+    slopes.push_back(constants[k].slope(g[k]));
+  }
+  const auto size = std::ssize(found);
+  const Eigen::VectorXd slope = Eigen::VectorXd::Map(slopes.data(), size);
+  result.g = Eigen::VectorXd::Map(found.data(), size);
+  result.covariance = slope.asDiagonal() *
+                      adjustment.coefficient_covariance.topLeftCorner(size, size) *
+                      slope.asDiagonal();
+}
+
 /// chi^2, and the constants with their standard errors.
 void read_constants(WheelCalibration& result, const std::vector<double>& g, const Wanted& wanted,
                     const RecordingAdjustment& adjustment) {
@@ -137,6 +157,7 @@ void read_constants(WheelCalibration& result, const std::vector<double>& g, cons
   result.dof = adjustment.dof;
   const Robot& robot = result.model.robot;
   const std::vector<SoughtConstant> constants = sought_constants(robot);
+  keep_covariance(result, g, wanted, adjustment);
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < constants.size(); ++k) {
     if (!wanted[k]) continue;

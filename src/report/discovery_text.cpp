@@ -58,8 +58,8 @@ std::string discovery_text(const Discovery& result, const Noise& given,
   std::string text;
   text += fmt::format("{}\n", verdict_text(result.consistent ? Mood::good : Mood::bad,
                                            verdict_in_words(result), style));
-  for (const EffectEstimate& one : result.found.effects) {
-    text += fmt::format("  {}: {}\n", one.effect.name, in_words(one.effect, one.sd));
+  for (const std::string& line : effects_in_words(result.found)) {
+    text += fmt::format("  {}\n", line);
   }
   text += steps_text(result, noise_found, style);
   for (const DiscoveryStep& step : result.steps) {

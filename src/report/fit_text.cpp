@@ -44,6 +44,8 @@ std::string estimates_text(const EffectGain& result, TextStyle style) {
 std::string fit_text(const EffectGain& result, const std::optional<FittedNoise>& noise,
                      TextStyle style) {
   std::string text = estimates_text(result, style);
+  const std::optional<OneWheel> wheel = robot_constants(result.with.model, result.with).one_wheel;
+  if (wheel) text += "one wheel: " + in_words(*wheel) + "\n";
   if (result.with.model.effects.empty()) {
     text += fmt::format("under the noise found: {}, p {}\n\n",
                         fit_in_words(result.with.chi2, result.with.dof, result.with.coefficients),

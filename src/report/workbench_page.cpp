@@ -24,6 +24,7 @@ constexpr const char* kBody = R"html(<header id="head">
 <button type="button" id="redo" disabled>Redo</button>
 <span class="takes">Export:
 <a href="export/model.toml" download>model.toml</a>
+<a href="export/constants.toml" download>constants</a>
 <a href="export/commands.sh" download>commands</a>
 <a href="export/odometry.cpp" download>C++</a>
 <a href="export/report.html" download>report</a></span>

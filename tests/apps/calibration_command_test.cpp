@@ -57,9 +57,23 @@ TEST(UmbmarkCommand, WritesWhatTheFormatsPromise) {
   EXPECT_NEAR(result["sem_m"].get<double>(), 1e-3 * std::sqrt(200.0 / 3.0 / 4.0), 1e-12);
   EXPECT_TRUE(result["second_round_worthwhile"].get<bool>());
 
-  const GeometryErrors written = geometry_errors(read_model(scratch.path() / "m.toml"));
+  // The wheelbase stands in [robot], once.
+  const Model model = read_model(scratch.path() / "m.toml");
+  const GeometryErrors written = geometry_errors(model);
   EXPECT_NEAR(written.diameter_ratio, result["exact"]["E_d"].get<double>(), 1e-14);
-  EXPECT_NEAR(written.wheelbase_ratio, result["exact"]["E_b"].get<double>(), 1e-14);
+  EXPECT_EQ(written.wheelbase_ratio, 1.0);
+  EXPECT_NEAR(model.robot.wheelbase, 0.5 * result["exact"]["E_b"].get<double>(), 1e-14);
+  for (const json& one : result["constants"]) {
+    const std::string name = one["name"];
+    const char* key = name == "wheelbase"    ? "wheelbase_m"
+                      : name == "left wheel" ? "c_left"
+                                             : "c_right";
+    EXPECT_NEAR(one["new"].get<double>(), result["exact"][key].get<double>(), 1e-12) << name;
+    EXPECT_NEAR(one["sd"].get<double>(), result["exact"][std::string("sd_") + key].get<double>(),
+                1e-6 * one["sd"].get<double>())
+        << name;
+  }
+  EXPECT_EQ(result["constants"].size(), 3U);
   EXPECT_NE(scratch.contents().at("plots/umbmark.svg").find("</svg>"), std::string::npos);
 }
 
@@ -88,9 +102,12 @@ TEST(UmbmarkCommand, RoundsMultiplyWhetherTogetherOrThroughAModel) {
     return geometry_errors(read_model(scratch.path() / file));
   };
   EXPECT_NEAR(total("both.toml").diameter_ratio, total("2.toml").diameter_ratio, 1e-13);
-  EXPECT_NEAR(total("both.toml").wheelbase_ratio, total("2.toml").wheelbase_ratio, 1e-13);
+  const auto wheelbase = [&](const char* file) {
+    return read_model(scratch.path() / file).robot.wheelbase;
+  };
+  EXPECT_NEAR(wheelbase("both.toml"), wheelbase("2.toml"), 1e-13);
   EXPECT_NEAR(total("2.toml").diameter_ratio, 1.004, 2e-4);
-  EXPECT_NEAR(total("2.toml").wheelbase_ratio, 1.02, 1e-3);
+  EXPECT_NEAR(wheelbase("2.toml"), 0.34 * 1.02, 4e-4);
   const json result = read_json(scratch.path() / "both.json");
   ASSERT_EQ(result["rounds"].size(), 2U);
   EXPECT_LT(result["E_max_syst_m"].get<double>(),

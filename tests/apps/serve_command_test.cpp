@@ -69,6 +69,8 @@ TEST(ServeCommand, FromMisfitToModelByRequests) {
   const Model model = read_model(file);
   ASSERT_EQ(model.effects.size(), 1U);
   EXPECT_NEAR(model.effects[0].coefficients.at(0), 0.04, 0.002);
+  EXPECT_NE(bench.get("export/constants.toml").body.find("no constant undoes hard iron"),
+            std::string::npos);
   EXPECT_NE(bench.get("export/odometry.cpp").body.find("CorrectedOdometry"), std::string::npos);
   EXPECT_NE(bench.get("export/report.html").body.find("</html>"), std::string::npos);
   EXPECT_EQ(bench.get("export/../../etc/passwd").status, 404);
