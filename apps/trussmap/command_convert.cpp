@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ConvertOptions {
-  std::string in;
+  std::vector<std::string> in;
   std::string out;
   std::string map;
   bool inspect = false;
@@ -196,17 +196,31 @@ constexpr Foreign kForeign[] = {{&is_mrclam, &convert_mrclam},
                                 {&is_line_robot, &convert_line_robot},
                                 {&is_encoder_log, &convert_encoder_log}};
 
-void run_convert(const ConvertOptions& options) {
-  const fs::path in = options.in;
+/// The last name is that of what is written; with --inspect all are read.
+void part_out(ConvertOptions& options) {
+  if (options.inspect || !options.out.empty() || options.in.size() < 2) return;
+  options.out = options.in.back();
+  options.in.pop_back();
+}
+
+void run_convert(ConvertOptions options) {
+  part_out(options);
+  const fs::path in = options.in.front();
   const fs::path out = options.out;
+  const std::vector<fs::path> logs(options.in.begin(), options.in.end());
   if (options.inspect) {
-    if (!options.out.empty()) {
+    if (logs.size() > 1 && !fs::exists(logs.back()) && !is_log(logs.back())) {
       throw UsageError("convert --inspect writes a map.toml alone, expected no OUT (--map FILE)");
     }
-    inspect_log_file(in, options.map);
+    inspect_log_files(logs, options.map);
     return;
   }
   if (options.out.empty()) throw UsageError("convert has nowhere to write to, expected OUT");
+  if (logs.size() > 1 && options.map.empty()) {
+    throw UsageError(
+        "several files become one recording by a map, expected --map map.toml (a first one: "
+        "trussmap convert --inspect, with the same files)");
+  }
   check_map_yaml(out, options.yaml);
   if (!options.odometer.second.empty()) {
     check_folder(out);
@@ -219,7 +233,7 @@ void run_convert(const ConvertOptions& options) {
   }
   if (!options.map.empty()) {
     check_folder(out);
-    convert_log(in, out, options.map);
+    convert_logs(logs, out, options.map);
     return;
   }
   for (const Foreign& one : kForeign) {
@@ -272,7 +286,9 @@ void setup_convert(const Command& app) {
   command
       .add_option(
           "IN", options->in,
-          "A map (.graphml, .g2o, .db), a recording's folder, a log (with --map or --inspect), "
+          "A map (.graphml, .g2o, .db), a recording's folder, a log or several that belong "
+          "together "
+          "(tables, a bag and tables, or a folder of them; with --map or --inspect), "
           "DIR/RobotN of an MRCLAM data set, an "
           "OptiOdom run "
           "..._run-NN.csv, DIR/NAME of ranges to radio beacons, of places that look "
@@ -291,12 +307,14 @@ void setup_convert(const Command& app) {
       .add_option(
           "--map", options->map,
           "IN is a log: MCAP, a rosbag2 (.db3 or its folder), .wpilog, Road Runner's .log, "
-          "or a table (.csv, .tsv, .txt); FILE (map.toml) says which of its fields are what. Of a "
+          "or a table (.csv, .tsv, .txt); FILE (map.toml) says which of its fields are what, and "
+          "of several logs by file = \"NAME\" in which one they are. Of a "
           "recording to a bag: FILE is written, and reads the bag back")
       .type_name("FILE");
   command.add_flag("--inspect", options->inspect,
                    "List topics, fields and columns of the log IN, and write a first map (--map, "
-                   "else map.toml) with guesses");
+                   "else map.toml) with guesses; of several logs also which clock is which, by "
+                   "the motion that they have in common");
   add_map_yaml(command, options->yaml);
   add_convert_recording(command, options->bag);
   add_convert_odometer(command, options->odometer);

@@ -35,16 +35,22 @@ std::string name_text(const std::string& name) {
   return shortened(escaped_controls(name), kNameWidth);
 }
 
+/// "the table" is its column of topics, where there is but one log.
+std::string topic_text(const LogTopicFacts& topic) {
+  const std::string name = topic.name.empty() ? "(the table)" : name_text(topic.name);
+  if (topic.file.empty()) return name;
+  return name_text(topic.file) + (topic.name.empty() ? "" : " " + name);
+}
+
 void print_topics(const LogInspection& log) {
   TextTable table{{Align::left, Align::left, Align::right, Align::right},
-                  {{"topic", "type", "messages", "rate"}},
+                  {{log.clocks.empty() ? "topic" : "file", "type", "messages", "rate"}},
                   true,
                   2};
   for (const LogTopicFacts& one : log.topics) {
     const std::string unread = one.unread.empty() ? "" : " (unread: " + one.unread + ")";
-    table.rows.push_back({one.name.empty() ? "(the table)" : name_text(one.name),
-                          name_text(one.type + unread), std::to_string(one.messages),
-                          rate_text(one)});
+    table.rows.push_back({topic_text(one), name_text(one.type + unread),
+                          std::to_string(one.messages), rate_text(one)});
   }
   fmt::print("{}\n", table_text(table));
 }
@@ -82,9 +88,10 @@ void print_fields(const LogInspection& log) {
         ++more;
         continue;
       }
-      const std::string path = topic.name.empty() ? one.path
-                               : one.path.empty() ? topic.name
-                                                  : topic.name + '/' + one.path;
+      const std::string file = topic.file.empty() ? "" : topic.file + ": ";
+      const std::string path = file + (topic.name.empty() ? one.path
+                                       : one.path.empty() ? topic.name
+                                                          : topic.name + '/' + one.path);
       std::vector<std::string> row{name_text(path), std::to_string(one.values)};
       if (one.is_text) {
         row.push_back('"' + shortened(escaped_controls(one.example), 20) + '"');
@@ -106,9 +113,36 @@ void print_fields(const LogInspection& log) {
   }
 }
 
+/// Which clock is which, and in how far that is measured.
+void print_clocks(const LogInspection& log) {
+  if (log.clocks.empty()) return;
+  TextTable table{{Align::left, Align::right, Align::right, Align::right},
+                  {{"clock of", "from (s)", "to (s)", "set on by (s)"}},
+                  true,
+                  2};
+  const auto seconds = [](double value) {
+    return value == value ? fmt::format("{:.3f}", value) : std::string();
+  };
+  for (const LogClockFacts& one : log.clocks) {
+    table.rows.push_back({name_text(one.file), seconds(one.first), seconds(one.last),
+                          one.certain ? fmt::format("{}", one.clock) : "?"});
+  }
+  fmt::print("{}\n", table_text(table));
+  for (const LogClockFacts& one : log.clocks) {
+    fmt::print("  {}: {}\n", name_text(one.file), escaped_controls(one.why));
+  }
+  fmt::print("\n");
+}
+
+std::string names_of(const std::vector<fs::path>& logs) {
+  std::string text;
+  for (const fs::path& one : logs) text += (text.empty() ? "" : " ") + one.string();
+  return text;
+}
+
 }  // namespace
 
-void inspect_log_file(const fs::path& log, const fs::path& map) {
+void inspect_log_files(const std::vector<fs::path>& logs, const fs::path& map) {
   std::error_code ignored;
   const bool is_there = fs::exists(map.empty() ? fs::path("map.toml") : map, ignored);
   if (is_there && !map.empty()) {
@@ -116,10 +150,12 @@ void inspect_log_file(const fs::path& log, const fs::path& map) {
                      " is there already, expected another name for the map to write");
   }
   const fs::path to = map.empty() ? fs::path("map.toml") : map;
-  const LogInspection inspection = inspect_log(log);
+  const bool one = logs.size() == 1 && (is_log(logs.front()) || !fs::is_directory(logs.front()));
+  const LogInspection inspection = one ? inspect_log(logs.front()) : inspect_logs(logs);
   if (!is_there) write_file(to, inspection.map);
-  fmt::print("{}:\n\n", log.string());
+  fmt::print("{}:\n\n", names_of(logs));
   print_topics(inspection);
+  print_clocks(inspection);
   print_frames(inspection);
   print_fields(inspection);
   if (!inspection.cut_off.empty()) {
@@ -134,14 +170,18 @@ void inspect_log_file(const fs::path& log, const fs::path& map) {
   fmt::print(
       "\nwritten: {}. Read it, mend what is wrong, and convert:\n"
       "  trussmap convert {} OUT --map {}\n",
-      to.string(), log.string(), to.string());
+      to.string(), names_of(logs), to.string());
 }
 
-void convert_log(const fs::path& log, const fs::path& out, const fs::path& map) {
-  const LogRecording read = read_log_recording(log, map);
-  write_recording(out, read.recording, log.filename().string() + "; " + read.epoch,
+void convert_logs(const std::vector<fs::path>& logs, const fs::path& out, const fs::path& map) {
+  const LogRecording read = read_log_recording(logs, map);
+  std::string names;
+  for (const fs::path& one : logs) {
+    names += (names.empty() ? "" : ", ") + one.filename().string();
+  }
+  write_recording(out, read.recording, names + "; " + read.epoch,
                   {{"model.toml", format_model(read.model)}});
-  fmt::print("converted: {} to the recording {}\n\n", log.string(), out.string());
+  fmt::print("converted: {} to the recording {}\n\n", names_of(logs), out.string());
   for (const LogCount& one : read.counts) fmt::print("  {:>7} {}\n", one.number, one.what);
   if (!read.warnings.empty()) fmt::print("\n");
   for (const std::string& one : read.warnings) fmt::print("{}", warning_text(one));

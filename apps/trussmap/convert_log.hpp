@@ -1,20 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Bags, team logs and tables: what is in one, and one as a recording.
+// Bags, team logs and tables: what is in one, and one, or several
+// that belong together, as a recording.
 #pragma once
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace trussmap::app {
 
-/// Prints what is in the log and writes a first map.toml. Throws UsageError where that file is
-/// there already.
-void inspect_log_file(const std::filesystem::path& log, const std::filesystem::path& map);
+/// Prints what is in the logs, and of several which clock is which, and writes a first map.toml.
+/// Throws UsageError where that file is there already.
+void inspect_log_files(const std::vector<std::filesystem::path>& logs,
+                       const std::filesystem::path& map);
 
-/// Writes the recording and its model.toml, and says what came of the log.
-void convert_log(const std::filesystem::path& log, const std::filesystem::path& out,
-                 const std::filesystem::path& map);
+/// Writes the recording and its model.toml, and says what came of the logs.
+void convert_logs(const std::vector<std::filesystem::path>& logs, const std::filesystem::path& out,
+                  const std::filesystem::path& map);
 
 }  // namespace trussmap::app

@@ -6,6 +6,7 @@
 //
 //   log + map.toml --read_log_recording--> recording + model
 //   log ------------inspect_log----------> what is in it, and a first map.toml
+//   logs -----------inspect_logs---------> the same of several, and which clock is which
 //
 // docs/logs.md has the formats and the keys of map.toml.
 #pragma once
@@ -45,8 +46,13 @@ struct LogRecording {
 };
 
 /// Reads a log as its map.toml says. Throws InputError: the map's line where it is wrong or asks
-/// for what the log does not have; the log's offset where it is damaged.
+/// for what the log does not have; the log's offset, or a table's line, where it is damaged.
 [[nodiscard]] LogRecording read_log_recording(const std::filesystem::path& log,
+                                              const std::filesystem::path& map);
+/// Of several logs that belong together: tables, or a bag and tables; of a folder all logs in it.
+/// Each table of the map says by `file` which log its fields are of, and each [[time]] which one's
+/// times. Throws InputError too where no log, or more than one, is called like a `file`.
+[[nodiscard]] LogRecording read_log_recording(const std::vector<std::filesystem::path>& logs,
                                               const std::filesystem::path& map);
 
 /// A field of a log's topic, or a column of a table.
@@ -66,6 +72,7 @@ struct LogFieldFacts {
 };
 
 struct LogTopicFacts {
+  std::string file;  ///< of which log, where several are inspected
   std::string name;
   std::string type;
   std::string unread;  ///< why its fields cannot be read; empty: they can
@@ -84,15 +91,34 @@ struct LogFrameFacts {
   std::size_t samples = 0;
 };
 
+/// The clock of one of several logs that are inspected together.
+struct LogClockFacts {
+  std::string file;        ///< the log
+  double first = kAbsent;  ///< s, by its own clock; NaN: no times were found
+  double last = kAbsent;
+  double clock = 0.0;         ///< s, to be added to its times, as in the map
+  double offset = kAbsent;    ///< s, the same as measured by motion that both have; NaN: none
+  double sd = kAbsent;        ///< s, of the offset
+  double likeness = kAbsent;  ///< correlation of the two motions at it
+  double drift = 0.0;         ///< by how much the offset grows per s, where that is plain
+  bool certain = true;        ///< false: nothing tells which clock it is; the map asks for it
+  std::string why;            ///< in words
+};
+
 struct LogInspection {
   std::vector<LogTopicFacts> topics;
   std::vector<LogFrameFacts> frames;
-  std::string cut_off;  ///< where the log ends too soon; empty: it is whole
-  std::string map;      ///< a first map.toml, whose guesses are its comments
+  std::string cut_off;                     ///< where the log ends too soon; empty: it is whole
+  std::string map;                         ///< a first map.toml, whose guesses are its comments
+  std::vector<LogClockFacts> clocks = {};  ///< of several logs, one each; else none
 };
 
 /// Throws InputError where the log is damaged.
 [[nodiscard]] LogInspection inspect_log(const std::filesystem::path& log);
+/// The same of several that belong together (of a folder: all logs in it), with their clocks: that
+/// of the wheels' log is the reference, and others are compared with it by turns, else by speeds. A
+/// table of landmarks (landmark,x,y) is the map's survey.
+[[nodiscard]] LogInspection inspect_logs(const std::vector<std::filesystem::path>& logs);
 
 // ----------------------------------------
 // Bags of ROS 2 messages (MCAP, profile ros2) out of poses and recordings: for Foxglove,

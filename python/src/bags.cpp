@@ -11,6 +11,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace trussmap::python {
 namespace {
@@ -26,9 +28,17 @@ struct ReadBag {
   std::vector<std::string> warnings;
 };
 
-ReadBag read_bag(const fs::path& log, const fs::path& map) {
+/// A path, or several.
+using Logs = std::variant<fs::path, std::vector<fs::path>>;
+
+std::vector<fs::path> listed(const Logs& logs) {
+  if (const auto* one = std::get_if<fs::path>(&logs)) return {*one};
+  return std::get<std::vector<fs::path>>(logs);
+}
+
+ReadBag read_bag(const Logs& log, const fs::path& map) {
   return unlocked([&] {
-    LogRecording read = read_log_recording(log, map);
+    LogRecording read = read_log_recording(listed(log), map);
     ReadBag result{std::make_shared<Recording>(std::move(read.recording)),
                    std::move(read.model),
                    std::move(read.epoch),
@@ -54,14 +64,16 @@ void add_bags(py::module_& module) {
         return "<trussmap.Bag of " + std::string(py::repr(py::cast(self.recording))) + ">";
       });
   module.def("read_bag", read_bag, py::arg("log"), py::arg("map"),
-             doc("A bag (MCAP, rosbag2), a WPILib or Road Runner log or a table, read as its "
-                 "map.toml says (docs/logs.md).",
+             doc("A bag (MCAP, rosbag2), a WPILib or Road Runner log or a table, or several that "
+                 "belong together, read as their map.toml says (docs/logs.md).",
                  "read_log_recording")
                  .c_str());
   module.def(
       "inspect_bag",
-      [](const fs::path& log) { return unlocked([&] { return inspect_log(log).map; }); },
-      py::arg("log"), "A first map.toml for a bag, whose guesses are to be read once.");
+      [](const Logs& log) { return unlocked([&] { return inspect_logs(listed(log)).map; }); },
+      py::arg("log"),
+      "A first map.toml for a bag, or for several logs that belong together, whose guesses are to "
+      "be read once.");
 }
 
 }  // namespace trussmap::python

@@ -58,6 +58,8 @@ TEST(ConvertLog, MistakesAreOneLineWithWhatToDo) {
   refused("convert --inspect " + log + " --map " + map, "there already");
   refused("convert --inspect " + out + "/none.mcap", "does not exist");
   refused("convert " + out + "/none.mcap " + out + " --map " + map, "none.mcap");
+  refused("convert " + log + " " + map + " " + out, "--map map.toml");
+  refused("convert --inspect " + log + " " + log + " --map " + out + ".toml", "given twice");
   EXPECT_FALSE(fs::exists(out)) << "nothing is half-written";
 }
 
@@ -117,6 +119,34 @@ TEST(SlowConvertLog, EveryFormatLeadsToTheSameDiagnosis) {
     if (first.empty()) first = coefficients;
     EXPECT_NEAR(coefficients[0], first[0], 1e-6 * std::abs(first[0])) << log;
     EXPECT_NEAR(coefficients[1], first[1], 1e-6 * std::abs(first[1])) << log;
+  }
+}
+
+/// Five layouts of joined tables, and the single table of the same drive.
+TEST(SlowConvertLog, JoinedTablesLeadToTheDiagnosisOfTheSingleTable) {
+  const ScratchFolder scratch;
+  const fs::path folder = scratch.path();
+  const std::string python = fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
+  const std::string writer =
+      std::string(TRUSSMAP_SOURCE_DIR) + "/tests/io/tables/joined_layouts.py";
+  ASSERT_EQ(std::system((python + " -B " + writer + " " + folder.string() + " 30").c_str()), 0);
+  std::vector<double> first;
+  for (const char* layout : {"single", "one", "two", "three", "four", "five"}) {
+    const fs::path in = folder / layout;
+    const std::string map = (in / "map.toml").string();
+    const std::string out = in.string() + ".converted";
+    const std::string logs = in.string() + (std::string(layout) == "single" ? "/all.csv" : "");
+    const Ran converted = run_trussmap("convert " + logs + " " + out + " --map " + map);
+    ASSERT_EQ(converted.status, 0) << converted.output;
+    const Ran found = run_trussmap("discover " + out + " --model " + out + "/model.toml --out " +
+                                   out + "_fitted.toml");
+    ASSERT_EQ(found.status, 0) << found.output;
+    const auto [names, coefficients] = effects_of(out + "_fitted.toml");
+    EXPECT_EQ(names, std::vector<std::string>{"gyro scale"}) << layout << found.output;
+    ASSERT_EQ(coefficients.size(), 1U) << layout;
+    if (first.empty()) first = coefficients;
+    EXPECT_NEAR(coefficients[0], 1.0 / 1.03 - 1.0, 0.005) << "3 % too much by the gyro";
+    EXPECT_NEAR(coefficients[0], first[0], 1e-4 * std::abs(first[0])) << layout;
   }
 }
 

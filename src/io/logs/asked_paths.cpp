@@ -11,13 +11,16 @@
 
 namespace trussmap {
 
-std::optional<FieldRef> AskedPaths::find(const std::string& path, std::size_t line, bool table,
-                                         FieldRef from) {
+std::optional<FieldRef> AskedPaths::find(const std::string& path, std::size_t line,
+                                         const LogTopic& topic, FieldRef from) {
   if (path.empty()) return std::nullopt;
   auto known = asked_.find({line, path});
   if (known == asked_.end()) {
     try {
-      known = asked_.emplace(std::pair(line, path), Asked{FieldPath(path, table), false, ""}).first;
+      known = asked_
+                  .emplace(std::pair(line, path),
+                           Asked{FieldPath(path, topic.table), false, "", topic.file})
+                  .first;
     } catch (const std::invalid_argument& error) {
       throw InputError(map_->file.string(), line, error.what());
     }
@@ -32,17 +35,18 @@ std::optional<FieldRef> AskedPaths::find(const std::string& path, std::size_t li
   return field;
 }
 
-double AskedPaths::number(const std::string& path, std::size_t line, bool table, FieldRef from) {
-  const std::optional<FieldRef> field = find(path, line, table, from);
+double AskedPaths::number(const std::string& path, std::size_t line, const LogTopic& topic,
+                          FieldRef from) {
+  const std::optional<FieldRef> field = find(path, line, topic, from);
   return field && std::isfinite(field->number()) ? field->number() : kAbsent;
 }
 
-void AskedPaths::check(const std::filesystem::path& log) const {
+void AskedPaths::check() const {
   for (const auto& [key, asked] : asked_) {
     if (asked.found) continue;
     throw InputError(map_->file.string(), key.first,
                      fmt::format("no message of {} has the field {}, expected one of {}",
-                                 log.string(), key.second, asked.fields));
+                                 asked.file, key.second, asked.fields));
   }
 }
 

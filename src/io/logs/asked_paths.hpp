@@ -20,19 +20,21 @@ class AskedPaths {
 
   /// The field at a path below `from`; none where the path is empty or the message lacks it. Throws
   /// InputError with the map's line where it is no path.
-  [[nodiscard]] std::optional<FieldRef> find(const std::string& path, std::size_t line, bool table,
-                                             FieldRef from);
+  [[nodiscard]] std::optional<FieldRef> find(const std::string& path, std::size_t line,
+                                             const LogTopic& topic, FieldRef from);
   /// The same as a number, NaN where there is none.
-  [[nodiscard]] double number(const std::string& path, std::size_t line, bool table, FieldRef from);
+  [[nodiscard]] double number(const std::string& path, std::size_t line, const LogTopic& topic,
+                              FieldRef from);
 
   /// After the last message: throws InputError where a path that was looked for was never found.
-  void check(const std::filesystem::path& log) const;
+  void check() const;
 
  private:
   struct Asked {
     FieldPath path;
     bool found = false;
     std::string fields;  ///< that a message had in its place
+    std::string file;    ///< of the log
   };
 
   const LogMap* map_;

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/calendar.hpp"
 
+#include <algorithm>
+#include <charconv>
 #include <chrono>
+#include <cmath>
 #include <regex>
 
 namespace trussmap {
@@ -36,6 +39,48 @@ std::optional<std::int64_t> calendar_time(const std::string& text) {
     seconds -= (zone.front() == '-' ? -1 : 1) * std::int64_t{minutes} * kSixty;
   }
   return seconds * kNanosecondsPerSecond + std::stoll(fraction);
+}
+
+std::optional<std::int64_t> decimal_time(std::string_view text, std::int64_t unit) {
+  const bool negative = text.starts_with('-');
+  if (negative || text.starts_with('+')) text.remove_prefix(1);
+  const std::size_t mantissa = std::min(text.find_first_of("eE"), text.size());
+  std::string digits(text.substr(0, mantissa));
+  const std::size_t mark = std::min(digits.find_first_of(".,"), digits.size());
+  auto whole = static_cast<std::ptrdiff_t>(mark);  // digits before the point
+  if (mark < digits.size()) digits.erase(mark, 1);
+  if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) {
+    return std::nullopt;
+  }
+  if (mantissa < text.size()) {
+    std::string_view power = text.substr(mantissa + 1);
+    if (power.starts_with('+')) power.remove_prefix(1);
+    int exponent = 0;
+    const auto read = std::from_chars(power.data(), power.data() + power.size(), exponent);
+    constexpr int kMost = 40;
+    if (read.ec != std::errc() || read.ptr != power.data() + power.size() ||
+        std::abs(exponent) > kMost) {
+      return std::nullopt;
+    }
+    whole += exponent;
+  }
+  if (whole < 0) digits.insert(0, static_cast<std::size_t>(-whole), '0');
+  whole = std::max<std::ptrdiff_t>(whole, 0);
+  const auto places = static_cast<std::size_t>(whole);
+  if (digits.size() < places) digits.resize(places, '0');
+  std::int64_t integer = 0;
+  constexpr std::int64_t kLargest = 4000000000000000000;  // ns
+  for (std::size_t k = 0; k < places; ++k) {
+    constexpr std::int64_t kTen = 10;
+    if (integer > kLargest / unit / kTen) return std::nullopt;
+    integer = kTen * integer + (digits[k] - '0');
+  }
+  const std::string below = "0." + digits.substr(places) + "0";
+  double fraction = 0.0;
+  std::from_chars(below.data(), below.data() + below.size(), fraction);
+  const std::int64_t t = integer * unit + std::llround(fraction * static_cast<double>(unit));
+  if (t > kLargest) return std::nullopt;
+  return negative ? -t : t;
 }
 
 }  // namespace trussmap

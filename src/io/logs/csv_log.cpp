@@ -16,6 +16,7 @@
 #include "trussmap/error.hpp"
 
 #include <cctype>
+#include <functional>
 #include <limits>
 
 namespace trussmap {
@@ -94,10 +95,10 @@ class Table {
                            (layout_.header ? "header" : "first row"));
     }
     ++topic_.topic.messages;
-    if (topic_.wanted && visit_->message) deliver();
+    if (topic_.wanted && visit_->message) deliver(record);
   }
 
-  void deliver() {
+  void deliver(const TableRecord& record) {
     tree_.clear();
     const std::size_t group = tree_.open_group("");
     for (std::size_t k = 0; k < layout_.columns.size(); ++k) {
@@ -106,21 +107,23 @@ class Table {
           k < fields_.fields().size() ? fields_.fields()[k] : std::string_view();
       switch (cells_.read(cell)) {
         case CellKind::absent:
-          tree_.add_number(name, kNothing);
+          tree_.add_number(name, kNothing, cell);
           break;
         case CellKind::text:
           tree_.add_text(name, cell);
           break;
         case CellKind::number:
           if (cells_.whole()) {
-            tree_.add_integer(name, cells_.integer());
+            tree_.add_integer(name, cells_.integer(), cell);
           } else {
-            tree_.add_number(name, cells_.number());
+            tree_.add_number(name, cells_.number(), cell);
           }
       }
     }
     tree_.close(group);
-    visit_->message({topic_.topic, 0, false, 0, 0, tree_.root()});
+    const std::string_view text = record.text.substr(0, record.text.find_last_not_of("\r\n") + 1);
+    visit_->message({topic_.topic, 0, false, 0, 0, tree_.root(), record.line,
+                     std::hash<std::string_view>()(text)});
   }
 
   struct {

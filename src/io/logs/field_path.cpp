@@ -35,6 +35,22 @@ std::optional<FieldRef> by_key(FieldRef list, std::string_view key, std::string_
   return std::nullopt;
 }
 
+/// 3 of "column 3"; 0 of anything else.
+std::size_t column_number(std::string_view name) {
+  constexpr std::string_view kColumn = "column ";
+  std::size_t number = 0;
+  if (!name.starts_with(kColumn)) return 0;
+  name.remove_prefix(kColumn.size());
+  const auto [last, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  return error == std::errc() && last == name.data() + name.size() ? number : 0;
+}
+
+/// Of a table's row, from 1.
+std::optional<FieldRef> column(FieldRef row, std::size_t number) {
+  const std::vector<FieldRef> all = row.children();
+  return number <= all.size() ? std::optional(all[number - 1]) : std::nullopt;
+}
+
 void collect(FieldRef field, const std::string& path, std::size_t elements,
              std::vector<NamedField>& found) {
   const FieldKind kind = field.kind();
@@ -76,7 +92,9 @@ FieldPath FieldPath::below_topic(std::string_view path, const LogTopic& topic) {
 FieldPath::FieldPath(std::string_view below, bool table) {
   if (below == ".") return;  // the message itself
   if (table) {
-    if (!below.empty()) steps_.push_back({Step::Kind::member, std::string(below), "", 0});
+    if (!below.empty()) {
+      steps_.push_back({Step::Kind::member, std::string(below), "", column_number(below)});
+    }
     return;
   }
   const auto fail = [below](const std::string& what) {
@@ -124,6 +142,7 @@ std::optional<FieldRef> FieldPath::find(FieldRef from) const {
     switch (step.kind) {
       case Step::Kind::member:
         next = at->member(step.name);
+        if (!next && step.number > 0) next = column(*at, step.number);
         break;
       case Step::Kind::number:
         next = at->element(step.number);

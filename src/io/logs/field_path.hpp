@@ -10,6 +10,7 @@
 //   /battery                            the message itself, where it is a number
 //   .                                   (below a topic) the message itself
 //   Left (mm)                           of a table: the column, with whatever characters
+//   column 3                            the same by its number, from 1, where none is called so
 #pragma once
 
 #include "io/logs/field_tree.hpp"
@@ -41,9 +42,9 @@ class FieldPath {
  private:
   struct Step {
     enum class Kind { member, number, fellow, key } kind = Kind::member;
-    std::string name;   ///< member; key
-    std::string value;  ///< what the fellow or the key's value is
-    std::size_t number = 0;
+    std::string name;        ///< member; key
+    std::string value;       ///< what the fellow or the key's value is
+    std::size_t number = 0;  ///< of an element; of a column, from 1, where its name has one
   };
   std::vector<Step> steps_;
 };

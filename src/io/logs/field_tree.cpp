@@ -50,12 +50,15 @@ Field& FieldTree::add(FieldKind kind, std::string_view name) {
   return field;
 }
 
-void FieldTree::add_number(std::string_view name, double value) {
-  add(FieldKind::number, name).number = value;
+void FieldTree::add_number(std::string_view name, double value, std::string_view text) {
+  Field& field = add(FieldKind::number, name);
+  field.number = value;
+  field.text = text;
 }
 
-void FieldTree::add_integer(std::string_view name, std::int64_t value) {
+void FieldTree::add_integer(std::string_view name, std::int64_t value, std::string_view text) {
   Field& field = add(FieldKind::integer, name);
+  field.text = text;
   field.integer = value;
   field.number = static_cast<double>(value);
 }

@@ -34,10 +34,10 @@ struct Field {
   FieldKind kind = FieldKind::number;
   std::string_view name = {};  ///< within its group; empty in a list, and of the root
   double number = std::numeric_limits<double>::quiet_NaN();  ///< of an integer, too
-  std::int64_t integer = 0;  ///< exact; an unsigned one beyond its range: the largest
-  std::string_view text = {};
-  std::size_t length = 0;  ///< of a list: elements in the message, of which the first are kept
-  std::size_t end = 0;     ///< where the next field lies that is not within this one
+  std::int64_t integer = 0;    ///< exact; an unsigned one beyond its range: the largest
+  std::string_view text = {};  ///< of a table's numbers, too: as written
+  std::size_t length = 0;      ///< of a list: elements in the message, of which the first are kept
+  std::size_t end = 0;         ///< where the next field lies that is not within this one
 };
 
 class FieldTree;
@@ -75,8 +75,8 @@ class FieldTree {
   /// The first field. Precondition: not empty.
   [[nodiscard]] FieldRef root() const { return {*this, 0}; }
 
-  void add_number(std::string_view name, double value);
-  void add_integer(std::string_view name, std::int64_t value);
+  void add_number(std::string_view name, double value, std::string_view text = {});
+  void add_integer(std::string_view name, std::int64_t value, std::string_view text = {});
   void add_unsigned(std::string_view name, std::uint64_t value);
   void add_text(std::string_view name, std::string_view value);
   /// What lies between open and close is within; close takes what open returned.

@@ -30,9 +30,9 @@ bool status_of(FieldRef message, SeenFix& fix, GatheredLog& to) {
 }  // namespace
 
 void feed_fixes(Gathering& g, const FixMap& fixes) {
-  g.feeds.add(fixes.topic, fixes.line, [&g, &fixes](const FedMessage& fed) {
+  g.feeds.add({fixes.topic, fixes.file, fixes.line}, [&g, &fixes](const FedMessage& fed) {
     const auto number = [&](const std::string& path) {
-      return g.paths.number(path, fixes.line, fed.topic.table, fed.field);
+      return g.paths.number(path, fixes.line, fed.topic, fed.field);
     };
     SeenFix fix;
     fix.t = fed.t + nanoseconds(fixes.clock);

@@ -33,9 +33,62 @@ class ImuReading {
   FieldPath covariance_;
 };
 
+/// Numbers in the fields of one message, by their paths.
+class FieldNumbers {
+ public:
+  FieldNumbers(Gathering& g, const FedMessage& fed, std::size_t line)
+      : g_(&g), fed_(&fed), line_(line) {}
+
+  /// NaN where there is none.
+  double at(const std::string& path) {
+    if (!is_of_topic(path, fed_->topic)) {
+      throw InputError(
+          g_->map.file.string(), line_,
+          path + " is of another topic than " + fed_->topic.name + ", expected the same");
+    }
+    const std::string below = below_topic(path, fed_->topic);
+    const auto field = g_->paths.find(below, line_, fed_->topic, fed_->message);
+    if (field && !field->is_number()) {
+      if (good_) g_->feeds.blame(path, *field);
+      good_ = false;
+    }
+    return field && std::isfinite(field->number()) ? field->number() : kAbsent;
+  }
+
+  /// Of a quaternion's four, or of its z and w, rad; NaN where they are no rotation.
+  double yaw(const std::vector<std::string>& paths) {
+    double parts[4] = {0.0, 0.0, 0.0, 0.0};
+    const std::size_t first = 4 - paths.size();
+    for (std::size_t k = 0; k < paths.size(); ++k) parts[first + k] = at(paths[k]);
+    const auto yaw = yaw_of_quaternion(parts[0], parts[1], parts[2], parts[3]);
+    const bool measured = std::all_of(parts, parts + 4, [](double one) { return one == one; });
+    if (!yaw && measured) ++g_->to.wrong_poses;
+    return yaw.value_or(kAbsent);
+  }
+
+  /// False: a field is a text.
+  [[nodiscard]] bool good() const { return good_; }
+
+ private:
+  Gathering* g_;
+  const FedMessage* fed_;
+  std::size_t line_;
+  bool good_ = true;
+};
+
 void feed_signal(Gathering& g, const SignalMap& signal, Signal& into) {
+  const AskedField asked{signal.field, signal.file, signal.line};
+  if (!signal.quaternion_fields.empty()) {
+    g.feeds.add_message(asked, [&g, &signal, &into](const FedMessage& fed) {
+      FieldNumbers numbers(g, fed, signal.line);
+      const double yaw = numbers.yaw(signal.quaternion_fields);
+      if (std::isfinite(yaw)) into.add(fed.t, yaw);
+      return numbers.good();
+    });
+    return;
+  }
   const ImuReading imu(signal.field);
-  g.feeds.add(signal.field, signal.line, [&signal, &into, imu](const FedMessage& fed) {
+  g.feeds.add(asked, [&signal, &into, imu](const FedMessage& fed) {
     if (imu.is_absent(fed)) return false;
     if (signal.quaternion) {
       const auto yaw = yaw_of_quaternion(fed.field);
@@ -43,21 +96,43 @@ void feed_signal(Gathering& g, const SignalMap& signal, Signal& into) {
       return yaw.has_value();
     }
     if (!fed.field.is_number()) return false;
-    if (std::isfinite(fed.field.number())) into.add(fed.t, fed.field.number());
+    if (std::isfinite(fed.field.number())) into.add(fed.t, fed.field.number(), fed.row);
     return true;
   });
 }
 
 void feed_twist(Gathering& g) {
-  g.feeds.add(g.map.odometry.twist, g.map.odometry.line, [&g](const FedMessage& fed) {
+  const OdometryMap& odometry = g.map.odometry;
+  g.feeds.add({odometry.twist, odometry.file, odometry.line}, [&g](const FedMessage& fed) {
     const auto twist = twist_of(fed.field);
     if (twist) g.to.twists.push_back({fed.t + nanoseconds(g.map.odometry.clock), *twist});
     return twist.has_value();
   });
 }
 
-void feed_pose(Gathering& g, const std::string& path, std::size_t line, double clock,
+/// Velocities by their fields.
+void feed_speeds(Gathering& g) {
+  const OdometryMap& odometry = g.map.odometry;
+  g.feeds.add_message({odometry.speed, odometry.file, odometry.line},
+                      [&g, &odometry](const FedMessage& fed) {
+                        FieldNumbers numbers(g, fed, odometry.line);
+                        FieldTwist twist;
+                        twist.ahead = odometry.speed_unit * numbers.at(odometry.speed);
+                        twist.turn = odometry.turn_rate_unit * numbers.at(odometry.turn_rate);
+                        if (!odometry.sideways.empty()) {
+                          const double left = odometry.speed_unit * numbers.at(odometry.sideways);
+                          twist.left = std::isfinite(left) ? left : 0.0;
+                        }
+                        if (std::isfinite(twist.ahead) && std::isfinite(twist.turn)) {
+                          g.to.twists.push_back({fed.t + nanoseconds(odometry.clock), twist});
+                        }
+                        return numbers.good();
+                      });
+}
+
+void feed_pose(Gathering& g, const AskedField& asked, double clock,
                std::vector<TimedFieldPose>& into) {
+  const std::string& path = asked.path;
   if (is_frame_path(path)) {
     want_frames(g, path.substr(0, path.find(':')));
     // Any way to split it at a dot.
@@ -69,11 +144,15 @@ void feed_pose(Gathering& g, const std::string& path, std::size_t line, double c
     }
     return;
   }
-  g.feeds.add(path, line, [&g, clock, &into](const FedMessage& fed) {
+  const bool odometry = &into == &g.to.odometry;
+  g.feeds.add(asked, [&g, clock, &into, odometry](const FedMessage& fed) {
     const auto pose = pose_of(fed.field);
     if (!pose || !pose->turned) {
       ++g.to.wrong_poses;
       return false;
+    }
+    if (const auto twist = odometry ? twist_of(fed.message) : std::nullopt) {
+      g.to.twists_move = g.to.twists_move || twist->ahead != 0.0 || twist->turn != 0.0;
     }
     into.push_back(
         {fed.t + nanoseconds(clock), pose->position.x(), pose->position.y(), pose->yaw()});
@@ -81,30 +160,32 @@ void feed_pose(Gathering& g, const std::string& path, std::size_t line, double c
   });
 }
 
-void feed_truth(Gathering& g, const TruthMap& truth) {
-  if (!truth.pose.empty()) {
-    feed_pose(g, truth.pose, truth.line, truth.clock, g.to.truth);
-    return;
-  }
-  // Its three fields are of one message: those of the topic of x.
-  g.feeds.add_message(truth.x, truth.line, [&g, &truth](const FedMessage& fed) {
-    const auto number = [&](const std::string& path) {
-      if (!is_of_topic(path, fed.topic)) {
-        throw InputError(g.map.file.string(), truth.line,
-                         "[truth]: " + path + " is of another topic than x, expected the same");
-      }
-      std::string below = path;
-      if (!fed.topic.table) below.erase(0, std::min(fed.topic.name.size() + 1, below.size()));
-      return g.paths.number(below, truth.line, fed.topic.table, fed.field);
-    };
-    const TimedFieldPose pose{fed.t + nanoseconds(truth.clock), truth.unit * number(truth.x),
-                              truth.unit * number(truth.y),
-                              truth.heading_unit * number(truth.heading)};
-    if (std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading)) {
-      g.to.truth.push_back(pose);
+/// A pose by its fields, all of one message.
+void feed_pose_fields(Gathering& g, const PoseFields& fields, const AskedField& asked, double clock,
+                      std::vector<TimedFieldPose>& into) {
+  const std::size_t line = asked.line;
+  g.feeds.add_message(asked, [&g, &fields, line, clock, &into](const FedMessage& fed) {
+    FieldNumbers numbers(g, fed, line);
+    const double x = fields.unit * numbers.at(fields.x);
+    const double y = fields.unit * numbers.at(fields.y);
+    const double heading =
+        fields.heading_unit *
+        (fields.quaternion.empty() ? numbers.at(fields.heading) : numbers.yaw(fields.quaternion));
+    if (std::isfinite(x) && std::isfinite(y) && std::isfinite(heading)) {
+      into.push_back({fed.t + nanoseconds(clock), x, y, heading});
     }
-    return true;
+    return numbers.good();
   });
+}
+
+void feed_poses(Gathering& g, const std::string& pose, const PoseFields& fields,
+                const std::string& file, std::size_t line, double clock,
+                std::vector<TimedFieldPose>& into) {
+  if (pose.empty()) {
+    feed_pose_fields(g, fields, {fields.x, file, line}, clock, into);
+  } else {
+    feed_pose(g, {pose, file, line}, clock, into);
+  }
 }
 
 void take_frames(Gathering& g, const LogMessage& message) {
@@ -134,16 +215,24 @@ void feed_all(Gathering& g) {
   }
   if (g.map.heading) feed_signal(g, *g.map.heading, g.to.heading.emplace_back(*g.map.heading));
   if (g.map.yaw_rate) feed_signal(g, *g.map.yaw_rate, g.to.yaw_rate.emplace_back(*g.map.yaw_rate));
-  if (!g.map.odometry.twist.empty()) feed_twist(g);
-  if (!g.map.odometry.pose.empty()) {
-    feed_pose(g, g.map.odometry.pose, g.map.odometry.line, g.map.odometry.clock, g.to.odometry);
+  const OdometryMap& odometry = g.map.odometry;
+  if (!odometry.twist.empty()) {
+    feed_twist(g);
+  } else if (!odometry.speed.empty()) {
+    feed_speeds(g);
+  } else if (odometry.line > 0) {
+    feed_poses(g, odometry.pose, odometry.fields, odometry.file, odometry.line, odometry.clock,
+               g.to.odometry);
   }
-  if (g.map.truth) feed_truth(g, *g.map.truth);
+  if (g.map.truth) {
+    const TruthMap& truth = *g.map.truth;
+    feed_poses(g, truth.pose, truth.fields, truth.file, truth.line, truth.clock, g.to.truth);
+  }
   if (g.map.fixes) feed_fixes(g, *g.map.fixes);
   for (const SightingMap& one : g.map.sightings) feed_sightings(g, one);
 }
 
-void read(Gathering& g, const std::filesystem::path& log) {
+void read(Gathering& g) {
   LogVisit visit;
   visit.wanted = [&g](const LogTopic& topic) {
     return g.feeds.wants(topic) || g.tf_topics.contains(topic.name);
@@ -153,14 +242,15 @@ void read(Gathering& g, const std::filesystem::path& log) {
     g.feeds.take(message);
   };
   try {
-    g.to.end = read_message_log(log, visit);
-    require_messages(log, g.to.end);
+    g.to.end = g.logs.read(
+        visit, [&g](std::size_t log) { return g.feeds.wants_of(log) || !g.logs.is_table(log); });
   } catch (const std::invalid_argument& error) {  // of a path below a message
     throw InputError(g.map.file.string(), 0, error.what());
   }
-  g.paths.check(log);
-  g.feeds.check(log, g.to.end);
+  g.paths.check();
+  g.feeds.check(g.to.end);
   g.to.refused = g.feeds.refused();
+  g.to.first_refused = g.feeds.first_refused();
   g.to.frames.sort();
 }
 
@@ -190,14 +280,14 @@ FramePath frame_path(const std::string& path, const FrameTree& frames) {
   return first;
 }
 
-GatheredLog gather(const std::filesystem::path& log, const LogMap& map) {
+GatheredLog gather(const JoinedLogs& logs, const LogMap& map) {
   std::vector<std::string> lost;
   for (int pass = 0;; ++pass) {
     GatheredLog result;
     for (const std::string& frame : lost) result.frames.wants(frame);
-    Gathering gathering{map, result};
+    Gathering gathering{map, logs, result};
     feed_all(gathering);
-    read(gathering, log);
+    read(gathering);
     lost = result.frames.lost();
     // A frame that turned out to be needed when it had gone: again, and now it is kept.
     if (lost.empty() || pass > 0) return result;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "io/logs/frame_tree.hpp"
+#include "io/logs/joined_logs.hpp"
 #include "io/logs/log_map.hpp"
 #include "io/logs/message_log.hpp"
 #include "io/logs/pose_fields.hpp"
@@ -68,14 +69,16 @@ struct GatheredLog {
   FrameTree frames;
   std::size_t wrong_poses = 0;  ///< poses and transforms whose quaternions are none
   std::size_t refused = 0;      ///< fields that are not what was expected: texts for numbers
+  std::string first_refused;    ///< where the first of these is
+  bool twists_move = false;     ///< of an odometry whose poses were asked for
   std::size_t negative_ranges = 0;
   std::size_t lost_fixes = 0;  ///< of a receiver that had no fix
   std::size_t unnamed = 0;     ///< sightings without a landmark's name
 };
 
-/// Throws InputError where the log is damaged, and with the map's line where it asks for what the
+/// Throws InputError where a log is damaged, and with the map's line where it asks for what the
 /// log does not have. The map must outlive the result.
-[[nodiscard]] GatheredLog gather(const std::filesystem::path& log, const LogMap& map);
+[[nodiscard]] GatheredLog gather(const JoinedLogs& logs, const LogMap& map);
 
 /// "/tf:map.base_link" as topic, parent and child; false where it is no such path.
 struct FramePath {

@@ -25,12 +25,12 @@ std::optional<std::string> beside(const std::string& path, std::size_t number, b
 }
 
 /// The landmark's name; none where the message lacks its field.
-std::optional<std::string> name_in(AskedPaths& paths, const SightingMap& map, bool table,
+std::optional<std::string> name_in(AskedPaths& paths, const SightingMap& map, const LogTopic& topic,
                                    FieldRef message, FieldRef at, std::size_t number) {
   if (!map.name.empty()) return map.name;
-  const auto other = beside(map.landmark, number, table);
-  const auto field = other ? FieldPath(*other, table).find(message)
-                           : paths.find(map.landmark, map.line, table, at);
+  const auto other = beside(map.landmark, number, topic.table);
+  const auto field = other ? FieldPath(*other, topic.table).find(message)
+                           : paths.find(map.landmark, map.line, topic, at);
   if (!field) return std::nullopt;
   return as_text(*field);
 }
@@ -63,7 +63,7 @@ bool is_measured(const SeenLandmark& seen, const SightingMap& map, GatheredLog& 
 /// False: the field is no pose.
 bool take_position(Gathering& g, const SightingMap& map, const FedMessage& fed, FieldRef at,
                    SeenLandmark& seen) {
-  const auto field = g.paths.find(map.position, map.line, fed.topic.table, at);
+  const auto field = g.paths.find(map.position, map.line, fed.topic, at);
   const auto pose = field ? pose_of(*field) : std::nullopt;
   if (!pose) return false;
   seen.positioned = true;
@@ -81,11 +81,11 @@ bool take_sighting(Gathering& g, const SightingMap& map, const FedMessage& fed, 
   SeenLandmark seen;
   seen.t = fed.t + nanoseconds(map.clock);
   seen.map = &map;
-  const auto name = name_in(g.paths, map, table, fed.field, at, number);
+  const auto name = name_in(g.paths, map, fed.topic, fed.field, at, number);
   if (!name) return false;
-  seen.range = map.range_unit * g.paths.number(map.range, map.line, table, at);
-  seen.bearing = map.bearing_unit * g.paths.number(map.bearing, map.line, table, at);
-  seen.yaw = map.yaw_unit * g.paths.number(map.yaw, map.line, table, at);
+  seen.range = map.range_unit * g.paths.number(map.range, map.line, fed.topic, at);
+  seen.bearing = map.bearing_unit * g.paths.number(map.bearing, map.line, fed.topic, at);
+  seen.yaw = map.yaw_unit * g.paths.number(map.yaw, map.line, fed.topic, at);
   if (map.changes) {
     const std::string now = fmt::format("{} {} {} {}", *name, seen.range, seen.bearing, seen.yaw);
     if (now == before) return true;
@@ -112,10 +112,10 @@ void feed_sightings(Gathering& g, const SightingMap& one) {
     g.to.frames.wants(one.base);
     if (!one.sensor.empty()) g.to.frames.wants(one.sensor);
   }
-  g.feeds.add(one.topic, one.line,
+  g.feeds.add({one.topic, one.file, one.line},
               [&g, &one, before = std::string()](const FedMessage& fed) mutable {
                 if (one.each.empty()) return take_sighting(g, one, fed, fed.field, before);
-                const auto list = g.paths.find(one.each, one.line, fed.topic.table, fed.field);
+                const auto list = g.paths.find(one.each, one.line, fed.topic, fed.field);
                 if (!list) return false;
                 const std::vector<FieldRef> elements = list->children();
                 for (std::size_t k = 0; k < elements.size(); ++k) {

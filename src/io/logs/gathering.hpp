@@ -15,8 +15,9 @@ namespace trussmap {
 
 struct Gathering {
   const LogMap& map;
+  const JoinedLogs& logs;
   GatheredLog& to;
-  MessageFeeds feeds{map};
+  MessageFeeds feeds{map, logs};
   AskedPaths paths{map};
   std::set<std::string> tf_topics = {};
 };

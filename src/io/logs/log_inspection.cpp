@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "io/logs/field_facts.hpp"
 #include "io/logs/field_path.hpp"
 #include "io/logs/frame_tree.hpp"
 #include "io/logs/log_survey.hpp"
@@ -46,31 +47,6 @@ std::vector<NamedField> fields_of(FieldRef message) {
     }
   }
   return found;
-}
-
-void add_number(double value, LogFieldFacts& facts) {
-  if (!std::isfinite(value)) return;
-  if (facts.values == 0) {
-    facts.first = facts.least = facts.largest = value;
-  } else {
-    facts.different += value != facts.last ? 1U : 0U;
-    facts.decreases += value < facts.last ? 1U : 0U;
-    facts.total_step += std::abs(value - facts.last);
-  }
-  facts.least = std::min(facts.least, value);
-  facts.largest = std::max(facts.largest, value);
-  facts.is_whole = facts.is_whole && value == std::floor(value);
-  facts.last = value;
-  ++facts.values;
-}
-
-void add_text(const std::string& text, LogFieldFacts& facts, std::string& before) {
-  facts.is_text = true;
-  if (text.empty()) return;
-  if (facts.example.empty()) facts.example = text;
-  facts.different += facts.values > 0 && text != before ? 1U : 0U;
-  before = text;
-  ++facts.values;
 }
 
 class Surveyor {
@@ -179,6 +155,31 @@ class Surveyor {
 
 }  // namespace
 
+void add_number(double value, LogFieldFacts& facts) {
+  if (!std::isfinite(value)) return;
+  if (facts.values == 0) {
+    facts.first = facts.least = facts.largest = value;
+  } else {
+    facts.different += value != facts.last ? 1U : 0U;
+    facts.decreases += value < facts.last ? 1U : 0U;
+    facts.total_step += std::abs(value - facts.last);
+  }
+  facts.least = std::min(facts.least, value);
+  facts.largest = std::max(facts.largest, value);
+  facts.is_whole = facts.is_whole && value == std::floor(value);
+  facts.last = value;
+  ++facts.values;
+}
+
+void add_text(const std::string& text, LogFieldFacts& facts, std::string& before) {
+  facts.is_text = true;
+  if (text.empty()) return;
+  if (facts.example.empty()) facts.example = text;
+  facts.different += facts.values > 0 && text != before ? 1U : 0U;
+  before = text;
+  ++facts.values;
+}
+
 std::string short_type(std::string_view type) {
   std::string text(type);
   if (const std::size_t at = text.find("/msg/"); at != std::string::npos) text.erase(at, 4);
@@ -206,6 +207,7 @@ LogSurvey survey_log(const std::filesystem::path& log) {
 
 LogInspection inspect_log(const std::filesystem::path& log) {
   LogSurvey survey = survey_log(log);
+  put_in_order(survey, log);
   survey.wheels = wheel_topics(survey);
   survey.wheels.constants = wheel_constants(log, survey.wheels);
   std::string map = guessed_map(survey, log.string());

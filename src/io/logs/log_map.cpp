@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/log_map.hpp"
 
+#include "io/logs/motion_map.hpp"
 #include "io/logs/signal_map.hpp"
 #include "io/logs/toml_fields.hpp"
 #include "io/model_tables.hpp"
@@ -21,32 +22,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TimeMap time_of(const toml::table& node, const std::string& file) {
-  TomlFields table(node, file, "[time]");
-  TimeMap time;
-  const std::string from = table.text("from", table.has("field") ? "field" : "stamp");
-  if (from == "stamp") {
-    time.from = TimeMap::From::stamp;
-  } else if (from == "log") {
-    time.from = TimeMap::From::log;
-  } else if (from == "publish") {
-    time.from = TimeMap::From::publish;
-  } else if (from == "field") {
-    time.from = TimeMap::From::field;
-    time.field = table.needed_text("field");
-    time.calendar = table.text("unit", "s") == "calendar";
-    if (!time.calendar) time.unit = unit_of(table, "unit", "s", {Quantity::time}).si;
-  } else {
-    table.fail("from is \"" + from + "\", expected stamp, log, publish or field");
-  }
-  table.finish();
-  return time;
-}
-
 SightingMap sighting_of(const toml::table& node, const std::string& file) {
   TomlFields table(node, file, "[[sightings]]");
   SightingMap one;
   one.line = table.line();
+  one.file = table.text("file");
   one.frames = table.text("frames");
   one.base = table.text("base", "base_link");
   one.tf = table.text("tf", "/tf");
@@ -89,6 +69,7 @@ FixMap fixes_of(const toml::table& node, const std::string& file) {
   TomlFields table(node, file, "[fixes]");
   FixMap fixes;
   fixes.line = table.line();
+  fixes.file = table.text("file");
   fixes.topic = table.text("topic");
   fixes.x = table.text("x");
   fixes.y = table.text("y");
@@ -104,26 +85,6 @@ FixMap fixes_of(const toml::table& node, const std::string& file) {
   }
   table.finish();
   return fixes;
-}
-
-TruthMap truth_of(const toml::table& node, const std::string& file) {
-  TomlFields table(node, file, "[truth]");
-  TruthMap truth;
-  truth.line = table.line();
-  truth.pose = table.text("pose");
-  truth.x = table.text("x");
-  truth.y = table.text("y");
-  truth.heading = table.text("heading");
-  truth.unit = unit_of(table, "unit", "m", {Quantity::length}).si;
-  truth.heading_unit =
-      unit_of(table, "heading_unit", "rad", {Quantity::angle}).si * table.sign("heading_sign");
-  truth.clock = table.clock();
-  const bool columns = !truth.x.empty() && !truth.y.empty() && !truth.heading.empty();
-  if (truth.pose.empty() != columns) {
-    table.fail("needs either a pose, or x, y and heading, expected one of them");
-  }
-  table.finish();
-  return truth;
 }
 
 std::vector<SurveyPoint> survey_of(const toml::table& node, const std::string& file) {
@@ -175,14 +136,9 @@ void read_part(const std::string& key, const toml::node& node, const std::string
                LogMap& map) {
   const auto table = [&]() -> const toml::table& { return table_at(node, file, key); };
   if (key == "time") {
-    map.time = time_of(table(), file);
+    map.times = times_of(node, file);
   } else if (key == "odometry") {
-    TomlFields fields(table(), file, "[odometry]");
-    map.odometry = {fields.text("twist"), fields.text("pose"), fields.clock(), fields.line()};
-    if (map.odometry.twist.empty() == map.odometry.pose.empty()) {
-      fields.fail("needs either a twist or a pose, expected the path of one");
-    }
-    fields.finish();
+    map.odometry = odometry_of(table(), file);
   } else if (key == "wheels") {
     for (const auto& [name, wheel] : table()) {
       if (!wheel.is_table()) continue;  // of all wheels: each has it
@@ -196,7 +152,9 @@ void read_part(const std::string& key, const toml::node& node, const std::string
   } else if (key == "yaw_rate") {
     map.yaw_rate = yaw_rate_of(table(), file);
   } else if (key == "covariates") {
+    const std::string log = TomlFields(table(), file, "[covariates]").text("file");
     for (const auto& [name, one] : table()) {
+      if (name.str() == "file") continue;  // of all that state none
       if (!is_covariate_name(name.str())) {
         throw InputError(file, name.source().begin.line,
                          "\"" + std::string(name.str()) +
@@ -204,6 +162,8 @@ void read_part(const std::string& key, const toml::node& node, const std::string
                              "digits or _, and no variable's name");
       }
       map.covariates.emplace_back(name.str(), covariate_of(one, file, std::string(name.str())));
+      std::string& own = map.covariates.back().second.file;
+      if (own.empty()) own = log;
     }
   } else if (key == "sightings") {
     const toml::array* all = node.as_array();
@@ -237,7 +197,8 @@ void share_constants(toml::table& wheels, const Robot& robot) {
   for (auto&& [key, value] : wheels) {
     if (value.is_table()) continue;
     for (auto&& [name, wheel] : wheels) {
-      if (!wheel.is_table() || is_steering_column(robot, std::string(name.str()))) continue;
+      const bool steers = is_steering_column(robot, std::string(name.str()));
+      if (!wheel.is_table() || (steers && key.str() != "file")) continue;
       wheel.as_table()->insert(key, value);
     }
   }
@@ -263,11 +224,6 @@ LogMap map_of(toml::table root, const fs::path& path) {
       throw InputError(file, signal.line,
                        "covariate " + name + " is called like a wheel, expected another name");
     }
-  }
-  if (map.wheels.empty() == (map.odometry.line == 0)) {
-    throw InputError(file, 0,
-                     "needs either [odometry] or [wheels.left] and [wheels.right], "
-                     "expected one of them");
   }
   return map;
 }
@@ -295,7 +251,16 @@ bool is_steering_column(const Robot& robot, const std::string& column) {
 }
 
 LogMap read_log_map(const fs::path& file) {
-  const std::string text = read_file(file);
+  LogMap map = parse_log_map(read_file(file), file);
+  if (map.wheels.empty() == (map.odometry.line == 0)) {
+    throw InputError(file.string(), 0,
+                     "needs either [odometry] or [wheels.left] and [wheels.right], "
+                     "expected one of them");
+  }
+  return map;
+}
+
+LogMap parse_log_map(const std::string& text, const fs::path& file) {
   try {
     LogMap map = map_of(toml::parse(text), file);
     map.to_state = lines_to_state(text);

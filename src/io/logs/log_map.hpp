@@ -3,7 +3,7 @@
 //
 // map.toml: which fields of a log are what in a recording. docs/logs.md has all keys.
 //
-//   [time]                   of messages: their own stamp, when they were recorded, or a field
+//   [time] [[time]]          of messages: their own stamp, when they were recorded, or a field
 //   [robot] [noise]          as in a model file
 //   [odometry]               the wheels by an odometry's twist or pose, or
 //   [wheels.NAME]            by a field each: left and right, or the columns of another drive
@@ -12,6 +12,8 @@
 //   [[sightings]] [fixes]    landmarks by frames or messages; positions without heading
 //   [truth] [survey]         what was measured independently
 //   [rows]                   how long a row of drive.csv is
+//
+// Where several logs are read as one, `file` of each table says which one its fields are of.
 #pragma once
 
 #include "trussmap/model.hpp"
@@ -28,9 +30,14 @@ namespace trussmap {
 /// What of a message is its time.
 struct TimeMap {
   enum class From { stamp, log, publish, field } from = From::stamp;
-  std::string field;      ///< below the message, of From::field
-  double unit = 1.0;      ///< s
-  bool calendar = false;  ///< a text like 2026-03-01 12:30:00.25 (UTC)
+  std::string file;            ///< of which log; empty: of all that no other one names
+  std::string field;           ///< below the message, of From::field
+  double unit = 1.0;           ///< s
+  bool calendar = false;       ///< a text like 2026-03-01 12:30:00.25 (UTC)
+  std::string fraction;        ///< below the message: what is added to it; empty: nothing
+  double fraction_unit = 1.0;  ///< s
+  double clock = 0.0;          ///< s, added to its times
+  std::size_t line = 0;
 };
 
 /// A field over time, and what makes SI of it: value = scale x field + offset.
@@ -41,7 +48,10 @@ struct SignalMap {
     per_row,     ///< what was added since the message before
     rate         ///< per second, held since the message before
   };
+  std::string file;   ///< the log that it is of; empty: the only one, or any bag
   std::string field;  ///< path with its topic
+  /// Instead of a group of them: the paths of a quaternion's x, y, z and w, or of z and w.
+  std::vector<std::string> quaternion_fields;
   Kind kind = Kind::level;
   double scale = 1.0;       ///< SI per unit of the field, with the sign
   double offset = 0.0;      ///< SI
@@ -52,16 +62,33 @@ struct SignalMap {
   std::size_t line = 0;     ///< of the map's file
 };
 
+/// A pose as fields of one message: paths with their topic.
+struct PoseFields {
+  std::string x, y;
+  std::string heading;                  ///< or
+  std::vector<std::string> quaternion;  ///< x, y, z and w, or z and w
+  double unit = 1.0;                    ///< m
+  double heading_unit = 1.0;            ///< rad, with the sign
+
+  [[nodiscard]] bool empty() const { return x.empty(); }
+};
+
 /// Where the wheels' travels come from, if not from fields of their own.
 struct OdometryMap {
+  std::string file;
   std::string twist;  ///< path to velocities ahead and round
   std::string pose;   ///< path to poses that are the wheels' sum, or /tf:parent.child
+  PoseFields fields;  ///< or such poses by their fields
+  std::string speed, turn_rate, sideways;  ///< or velocities by theirs; the last may be empty
+  double speed_unit = 1.0;                 ///< m/s
+  double turn_rate_unit = 1.0;             ///< rad/s, with the sign
   double clock = 0.0;
   std::size_t line = 0;
 };
 
 /// Sightings, by frames or by messages.
 struct SightingMap {
+  std::string file;
   std::string frames;  ///< names of child frames, * for anything: one that the robot's camera sees
 
   std::string topic;                ///< else: of messages; of a table empty
@@ -87,6 +114,7 @@ struct SightingMap {
 };
 
 struct FixMap {
+  std::string file;
   std::string topic;                ///< of a table empty
   std::string x, y;                 ///< paths below the message; empty: as its type has it
   std::string latitude, longitude;  ///< deg
@@ -98,17 +126,16 @@ struct FixMap {
 };
 
 struct TruthMap {
-  std::string pose;           ///< path to a pose, or /tf:parent.child
-  std::string x, y, heading;  ///< or paths with their topic
-  double unit = 1.0;          ///< m
-  double heading_unit = 1.0;  ///< rad, with the sign
+  std::string file;
+  std::string pose;   ///< path to a pose, or /tf:parent.child
+  PoseFields fields;  ///< or its fields
   double clock = 0.0;
   std::size_t line = 0;
 };
 
 struct LogMap {
   std::filesystem::path file;
-  TimeMap time;
+  std::vector<TimeMap> times;
   OdometryMap odometry;
   std::vector<std::pair<std::string, SignalMap>> wheels;
   std::optional<SignalMap> heading;
@@ -129,5 +156,7 @@ struct LogMap {
 /// Throws InputError with file and line: no TOML, an unknown key, a wrong type or unit, a constant
 /// that is missing.
 [[nodiscard]] LogMap read_log_map(const std::filesystem::path& file);
+/// Of a text, `file` being its name; it may do without wheels. Throws as read_log_map does.
+[[nodiscard]] LogMap parse_log_map(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace trussmap

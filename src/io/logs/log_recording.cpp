@@ -260,21 +260,28 @@ void count_left_out(const WheelRows& rows, const GatheredLog& gathered, const Si
   count(rows.repeated, "messages of the wheels at the time of another: the later in the log counts",
         result);
   count(seen.outside, "sightings before or after the drive left out", result);
+  count(seen.repeated, "sightings that are there twice, time and all, left out", result);
   count(seen.no_frame,
         "sightings without a way from their frame to the robot's at their time left "
         "out",
         result);
   count(gathered.unnamed, "sightings without a landmark's name left out", result);
-  count(gathered.refused, "messages whose field is no number, pose or velocity left out", result);
+  if (gathered.refused > 0) {
+    result.counts.push_back({gathered.refused,
+                             "messages whose field is no number, pose or velocity left out, the "
+                             "first: " +
+                                 in_a_line(gathered.first_refused)});
+  }
   count(gathered.negative_ranges, "ranges below 0 left out", result);
   count(outside_fixes, "fixes before or after the drive left out", result);
   count(gathered.lost_fixes, "fixes that the receiver itself calls none left out", result);
   count(gathered.wrong_poses, "poses without a valid rotation left out", result);
 }
 
-LogRecording recording_of(const fs::path& log, const fs::path& map_file) {
+LogRecording recording_of(const std::vector<fs::path>& paths, const fs::path& map_file) {
   const LogMap map = read_log_map(map_file);
-  GatheredLog gathered = gather(log, map);
+  const JoinedLogs logs(paths);
+  GatheredLog gathered = gather(logs, map);
   LogRecording result;
   result.model = map.model;
   WheelRows rows = wheel_rows(map, gathered);
@@ -282,7 +289,7 @@ LogRecording recording_of(const fs::path& log, const fs::path& map_file) {
   result.epoch = clock.text();
 
   Recording& recording = result.recording;
-  recording.name = log.string();
+  recording.name = logs.all_names();
   recording.survey = map.survey;
   Drive& drive = recording.drive;
   drive.left = std::move(rows.left);
@@ -318,8 +325,12 @@ LogRecording recording_of(const fs::path& log, const fs::path& map_file) {
 }  // namespace
 
 LogRecording read_log_recording(const fs::path& log, const fs::path& map_file) {
+  return read_log_recording(std::vector<fs::path>{log}, map_file);
+}
+
+LogRecording read_log_recording(const std::vector<fs::path>& logs, const fs::path& map_file) {
   try {
-    return recording_of(log, map_file);
+    return recording_of(logs, map_file);
   } catch (const InputError& error) {
     // Names of fields and frames are anybody's, line ends and all.
     const std::string text = error.what();

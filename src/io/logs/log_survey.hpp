@@ -34,6 +34,7 @@ struct LogSurvey {
   std::vector<FrameFacts> frames;
   WheelTopics wheels;  ///< with their constants
   bool table = false;
+  std::string time_unit = {};  ///< of a table's times, where logs beside it tell; empty: a guess
   std::string cut_off;
 
   /// How much of the frame's z axis stands up in `base`, 0 to 1 (root mean square), if the frames
@@ -42,6 +43,15 @@ struct LogSurvey {
 };
 
 [[nodiscard]] LogSurvey survey_log(const std::filesystem::path& log);
+
+/// Of a table whose rows are not in order of time, or stand twice: its fields as in that order.
+void put_in_order(LogSurvey& survey, const std::filesystem::path& table);
+
+/// A first map.toml of logs that are read as one, with the clock of each; `survey`: a file of
+/// landmarks; empty: none.
+[[nodiscard]] std::string guessed_joined_map(const std::vector<LogSurvey>& surveys,
+                                             const std::vector<LogClockFacts>& clocks,
+                                             const std::string& survey);
 
 /// A first map.toml. `log`: its name, for the comments.
 [[nodiscard]] std::string guessed_map(const LogSurvey& survey, const std::string& log);

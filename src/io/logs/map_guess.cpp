@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/map_guess.hpp"
 
+#include "io/logs/named_fields.hpp"
 #include "recording/variable_names.hpp"
 
 #include <algorithm>
@@ -11,16 +12,14 @@ namespace trussmap {
 namespace {
 
 /// Fields of all topics by their whole paths.
-std::vector<NamedFacts> all_fields(const LogSurvey& survey) {
-  std::vector<NamedFacts> fields;
+void add_fields(const LogSurvey& survey, const std::string& file, std::vector<NamedFacts>& fields) {
   for (const LogTopicFacts& topic : survey.topics) {
     for (const LogFieldFacts& one : topic.fields) {
       std::string path = one.path;
       if (!topic.name.empty()) path = one.path.empty() ? topic.name : topic.name + '/' + one.path;
-      fields.push_back({std::move(path), &one, topic.step});
+      fields.push_back({std::move(path), &one, topic.step, topic.name, file, survey.time_unit});
     }
   }
-  return fields;
 }
 
 std::string lowered(std::string text) {
@@ -29,7 +28,14 @@ std::string lowered(std::string text) {
   return text;
 }
 
-/// left, ticks and leftticks of leftTicks: parted at other characters, and at humps, too.
+bool has_ros_types(const LogSurvey& survey) {
+  return std::any_of(survey.topics.begin(), survey.topics.end(), [](const LogTopicFacts& one) {
+    return one.type.find("_msgs/") != std::string::npos;
+  });
+}
+
+}  // namespace
+
 std::vector<std::string> words_of(const std::string& name) {
   std::vector<std::string> words;
   std::string whole;
@@ -57,19 +63,14 @@ std::vector<std::string> words_of(const std::string& name) {
   return words;
 }
 
-bool has_ros_types(const LogSurvey& survey) {
-  return std::any_of(survey.topics.begin(), survey.topics.end(), [](const LogTopicFacts& one) {
-    return one.type.find("_msgs/") != std::string::npos;
-  });
-}
-
-}  // namespace
-
 bool has_word(const std::string& name, const std::vector<std::string>& words) {
   const std::string lower = lowered(name);
   const std::vector<std::string> own = words_of(name);
   return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
-    // "l_", "/gt": as they stand; "enc" begins a word: encoder, not presence.
+    if (word.starts_with('=')) {
+      return std::find(own.begin(), own.end(), word.substr(1)) != own.end();
+    }
+    // "gt_", "/gt": as they stand; "enc" begins a word: encoder, not presence.
     if (std::any_of(word.begin(), word.end(), [](unsigned char c) { return !std::isalnum(c); })) {
       return lower.find(word) != std::string::npos;
     }
@@ -103,13 +104,11 @@ std::string covariate_name(const std::string& path) {
   return name;
 }
 
-std::string guessed_map(const LogSurvey& survey, const std::string& log) {
-  MapText body;
-  const Guessed guessed = has_ros_types(survey)
-                              ? guess_by_types(survey, body)
-                              : guess_by_names(all_fields(survey), survey.table, body);
-  MapText text;
-  text.comment("How " + log + " becomes a recording (keys: docs/logs.md). Guessed from its names");
+namespace {
+
+/// `logs`: "a.csv becomes".
+void guess_head(const Guessed& guessed, const std::string& logs, MapText& text) {
+  text.comment("How " + logs + " a recording (keys: docs/logs.md). Guessed from its names");
   text.comment("and values: read it once, mend what is wrong, take out what is not wanted.");
   if (guessed.to_state > 0) {
     text.comment(fmt::format("Lines to mend first: {} marked STATE IT.", guessed.to_state));
@@ -122,7 +121,61 @@ std::string guessed_map(const LogSurvey& survey, const std::string& log) {
     text.comment("NOTHING TIES THE DRIVE TO A PLACE: state [[sightings]], [fixes] or [truth].");
   }
   text.blank();
+}
+
+/// A bag and the tables beside it.
+Guessed guess_of_bag(const LogSurvey& bag, const std::vector<NamedFacts>& tables,
+                     const std::vector<LogClockFacts>& clocks, MapText& text) {
+  FreeFields fields(tables);
+  int to_state = guess_times(fields, clocks, text);
+  MapText own;
+  Guessed guessed = guess_by_types(bag, own);
+  guessed.truth = own.str().find("\n[truth]") != std::string::npos;
+  guessed.fixes = own.str().find("\n[fixes]") != std::string::npos;
+  guessed.to_state += to_state;
+  text.append(own);
+  if (guess_beside(tables, guessed, text)) guessed.places = true;
+  return guessed;
+}
+
+}  // namespace
+
+std::string guessed_map(const LogSurvey& survey, const std::string& log) {
+  MapText body;
+  std::vector<NamedFacts> fields;
+  add_fields(survey, "", fields);
+  Guessed guessed;
+  if (has_ros_types(survey)) {
+    body.table("time");
+    body.text("from", "stamp", "header.stamp, and where there is none when it was recorded (log)");
+    guessed = guess_by_types(survey, body);
+  } else {
+    guessed = guess_by_names(fields, survey.table, {}, body);
+  }
+  MapText text;
+  guess_head(guessed, log + " becomes", text);
   text.comment("survey.file = \"survey.csv\"   # landmarks measured apart: landmark,x,y [m]");
+  return text.str() + "\n" + body.str();
+}
+
+std::string guessed_joined_map(const std::vector<LogSurvey>& surveys,
+                               const std::vector<LogClockFacts>& clocks,
+                               const std::string& survey) {
+  MapText body;
+  std::vector<NamedFacts> fields;
+  std::string names;
+  const auto bag = std::find_if(surveys.begin(), surveys.end(), has_ros_types);
+  for (std::size_t k = 0; k < surveys.size(); ++k) {
+    if (surveys[k].table || bag == surveys.end()) add_fields(surveys[k], clocks[k].file, fields);
+    names += (names.empty() ? "" : k + 1 == surveys.size() ? " and " : ", ") + clocks[k].file;
+  }
+  const Guessed guessed = bag == surveys.end() ? guess_by_names(fields, true, clocks, body)
+                                               : guess_of_bag(*bag, fields, clocks, body);
+  MapText text;
+  guess_head(guessed, names + " become", text);
+  const std::string line = "survey.file = " + toml_string(survey.empty() ? "survey.csv" : survey);
+  const char* const why = "landmarks measured apart: landmark,x,y [m]";
+  survey.empty() ? text.comment(line + "   # " + why) : text.line(line, why);
   return text.str() + "\n" + body.str();
 }
 

@@ -12,13 +12,31 @@ struct WheelFields {
 
 std::optional<WheelFields> wheel_fields(const FreeFields& fields, const FreeFields::Words& what,
                                         const FreeFields::Words& without) {
-  static const FreeFields::Words kLeft{"left", "l_", "_l", "lf", "enc_l", "encl"};
-  static const FreeFields::Words kRight{"right", "r_", "_r", "rf", "enc_r", "encr"};
+  static const FreeFields::Words kLeft{"left", "lf", "encl", "=l", "=vl", "=wl", "=dl", "=sl"};
+  static const FreeFields::Words kRight{"right", "rf", "encr", "=r", "=vr", "=wr", "=dr", "=sr"};
   FreeFields rest = fields;
-  const NamedFacts* left = rest.take({kLeft, what}, without);
-  const NamedFacts* right = left == nullptr ? nullptr : rest.find({kRight, what}, without);
-  if (right == nullptr) return std::nullopt;
-  return WheelFields{left, right};
+  while (const NamedFacts* left = rest.take({kLeft, what}, without)) {
+    FreeFields others = rest;
+    others.look_at(left->file);
+    const NamedFacts* right = others.find({kRight, what}, without);
+    // Left and right in files of their own.
+    if (right == nullptr && has_word(stem_of(left->file), {"left"})) {
+      others.look_at(std::nullopt);
+      right = others.find({kRight, what}, without);
+    }
+    if (right != nullptr) return WheelFields{left, right};
+  }
+  return std::nullopt;
+}
+
+/// What a row adds: called so, or metres that never come to half a one.
+bool is_increment(const NamedFacts& field, const std::optional<Unit>& unit, bool ticks) {
+  if (has_word(field.path, {"delta", "incr", "=dl", "=dr", "=inc"})) return true;
+  constexpr std::size_t kMany = 100;
+  constexpr double kShort = 0.5;  // m
+  const bool length = !ticks && (!unit || is_of(unit, {Quantity::length}));
+  const double range = (field.facts->largest - field.facts->least) * (unit ? unit->si : 1.0);
+  return length && field.facts->values > kMany && range < kShort;
 }
 
 /// What both wheels have in common. How many figures are left to state.
@@ -27,9 +45,12 @@ int guess_wheel_constants(const NamedFacts& field, MapText& text) {
   text.blank();
   text.table("wheels");
   const std::optional<Unit> unit = unit_in(field.path);
-  const bool speed = has_word(field.path, {"vel", "speed", "rate"}) ||
+  const bool speed = has_word(field.path, {"vel", "speed", "rate", "=vl", "=wl"}) ||
                      is_of(unit, {Quantity::speed, Quantity::turn_rate});
-  const bool whole = field.facts->is_whole && field.facts->largest - field.facts->least > 50.0;
+  const bool joint = field.path.find("position[") != std::string::npos ||
+                     field.path.find("velocity[") != std::string::npos;
+  const bool whole =
+      !joint && field.facts->is_whole && field.facts->largest - field.facts->least > 50.0;
   const bool ticks = is_of(unit, {Quantity::ticks}) ||
                      (!unit && (whole || has_word(field.path, {"tick", "count"})));
   if (ticks) {
@@ -43,11 +64,15 @@ int guess_wheel_constants(const NamedFacts& field, MapText& text) {
     to_state = 1;
   } else if (is_of(unit, {Quantity::length, Quantity::speed})) {
     text.text("unit", std::string(unit->name));
+  } else if (joint) {
+    text.text("unit", speed ? "rad/s" : "rad", "of a joint");
+    text.number("radius", 0.05, std::string("m; ") + kState);
+    to_state = 1;
   } else {
     text.text("unit", speed ? "m/s" : "m", "a guess: its name states none");
   }
   if (!speed) {
-    const bool sum = is_cumulative(*field.facts);
+    const bool sum = is_cumulative(*field.facts) && !is_increment(field, unit, ticks);
     text.text("kind", sum ? "cumulative" : "per row",
               sum ? "the sum so far" : "what was added since the row before");
     const double top = field.facts->largest;
@@ -63,6 +88,7 @@ int guess_wheel_constants(const NamedFacts& field, MapText& text) {
 void guess_wheel(const char* name, const NamedFacts& field, MapText& text) {
   text.blank();
   text.table(std::string("wheels.") + name);
+  write_file_of(field, text);
   text.text("field", field.path);
   text.number("sign", 1, "-1 where it counts down ahead");
 }
@@ -70,6 +96,7 @@ void guess_wheel(const char* name, const NamedFacts& field, MapText& text) {
 void guess_angle(const NamedFacts& field, const char* table, bool rate, MapText& text) {
   text.blank();
   text.table(table);
+  write_file_of(field, text);
   text.text("field", field.path);
   const std::optional<Unit> unit = unit_in(field.path);
   if (is_of(unit, {rate ? Quantity::turn_rate : Quantity::angle})) {
@@ -112,21 +139,29 @@ std::optional<int> guess_wheels(FreeFields& fields, MapText& text) {
 }
 
 void guess_headings(FreeFields& fields, MapText& text) {
-  static const FreeFields::Words kNot{"tag",  "target",  "goal", "setpoint", "truth",
-                                      "temp", "bearing", "gps",  "accel",    "pitch",
-                                      "roll", "_x",      "_y"};
+  static const FreeFields::Words kNot{"tag",  "target",  "goal", "setpoint", "truth",       "temp",
+                                      "cov",  "bearing", "gps",  "accel",    "acc",         "pitch",
+                                      "roll", "linear",  "cmd",  "frame",    "orientation", "quat"};
+  // Of a rate's three components that about z alone is the yaw's.
+  for (const NamedFacts& one : fields.all()) {
+    const char axis = axis_of(one.path);
+    if (axis == 'x' || axis == 'y') fields.mark_taken(one);
+  }
+  FreeFields::Words no_sum = kNot;
+  no_sum.insert(no_sum.end(), {"=az", "=mz", "=vz", "=qz", "=qw", "=z"});
+  static const FreeFields::Words kCompass{"compass", "magnet", "heading", "yaw"};
   if (const NamedFacts* rate = fields.take(
           {{"gyro", "yaw", "heading", "angular"}, {"rate", "vel", "omega", "/s", "dps", "angular"}},
           kNot)) {
     guess_angle(*rate, "yaw_rate", true, text);
   } else if (const NamedFacts* omega =
-                 fields.take({{"omega", "yawrate", "gyro_z", "gyroz", "gz"}}, kNot)) {
+                 fields.take({{"omega", "yawrate", "gyro_z", "gyroz", "gz", "wz"}}, kNot)) {
     guess_angle(*omega, "yaw_rate", true, text);
-  } else if (const NamedFacts* sum = fields.take({{"gyro", "navx", "pigeon", "imu"}}, kNot)) {
+  } else if (const NamedFacts* sum = fields.take({{"gyro", "navx", "pigeon", "imu"}}, no_sum)) {
     guess_angle(*sum, "yaw_rate",
                 !is_cumulative(*sum->facts) && !is_of(unit_in(sum->path), {Quantity::angle}), text);
   }
-  if (const NamedFacts* compass = fields.take({{"compass", "magnet", "heading", "yaw"}}, kNot)) {
+  if (const NamedFacts* compass = fields.take({kCompass}, kNot)) {
     text.blank();
     text.comment("If this is a compass; a gyro's sum is [yaw_rate] with the same keys:");
     guess_angle(*compass, "heading", false, text);

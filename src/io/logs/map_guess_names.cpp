@@ -7,73 +7,11 @@
 namespace trussmap {
 namespace {
 
-std::string unit_of_times(const NamedFacts& column) {
-  const std::optional<Unit> named = unit_in(column.path);
-  if (is_of(named, {Quantity::time})) return std::string(named->name);
-  const LogFieldFacts& facts = *column.facts;
-  // Since 1970, or by the step: no robot writes a row an hour or 100 000 a second.
-  if (facts.least > 1e17) return "ns";
-  if (facts.least > 1e14) return "us";
-  if (facts.least > 1e11) return "ms";
-  if (facts.least > 1e8) return "s";
-  const double step = facts.total_step / std::max(1.0, static_cast<double>(facts.values - 1));
-  if (step >= 1e6) return "ns";
-  if (step >= 2e3) return "us";
-  return step >= 2.0 ? "ms" : "s";
-}
-
-void guess_log_time(const FreeFields& fields, MapText& text) {
-  // A Road Runner's messages have no times of their own.
-  const NamedFacts* stamp = nullptr;
-  for (const NamedFacts& one : fields.all()) {
-    if (has_word(one.path, {"/timestamp"}) && one.facts->decreases == 0) stamp = &one;
-  }
-  const bool untimed = std::all_of(fields.all().begin(), fields.all().end(),
-                                   [](const NamedFacts& one) { return one.step != one.step; });
-  if (untimed && stamp != nullptr) {
-    text.text("field", stamp->path.substr(stamp->path.rfind('/') + 1));
-    text.text("unit", unit_of_times(*stamp));
-  } else {
-    text.text("from", "log", "when it was written");
-  }
-}
-
-/// What never goes back; called so, if some is.
-const NamedFacts* time_column(const std::vector<NamedFacts>& fields) {
-  const auto grows = [](const NamedFacts& one) {
-    return !one.facts->is_text && one.facts->decreases == 0 && one.facts->different > 0;
-  };
-  auto found = std::find_if(fields.begin(), fields.end(), [&grows](const NamedFacts& one) {
-    return grows(one) && has_word(one.path, {"time", "stamp", "millis", "micros", "clock"});
-  });
-  if (found == fields.end()) found = std::find_if(fields.begin(), fields.end(), grows);
-  return found == fields.end() ? nullptr : &*found;
-}
-
-/// How many figures are left to state.
-int guess_column_time(FreeFields& fields, MapText& text) {
-  if (const NamedFacts* column = time_column(fields.all())) {
-    fields.mark_taken(*column);
-    text.text("field", column->path);
-    text.text("unit", unit_of_times(*column));
-    return 0;
-  }
-  for (const NamedFacts& one : fields.all()) {
-    if (!one.facts->is_text || !has_word(one.path, {"time", "date", "stamp"})) continue;
-    fields.mark_taken(one);
-    text.text("field", one.path);
-    text.text("unit", "calendar", "date and time, UTC");
-    return 0;
-  }
-  text.line("field = \"\"", kState);
-  return 1;
-}
-
 void guess_covariates(const FreeFields& fields, MapText& text) {
   bool any = false;
   std::set<std::string> names;
   for (const NamedFacts& one : fields.all()) {
-    if (fields.is_taken(one) || one.facts->is_text || one.facts->different == 0) continue;
+    if (!fields.is_free(one) || one.facts->is_text) continue;
     if (!has_word(one.path, {"batt", "volt", "temp", "payload", "load", "current", "light", "mass",
                              "weight", "pressure"})) {
       continue;
@@ -84,20 +22,34 @@ void guess_covariates(const FreeFields& fields, MapText& text) {
     }
     any = true;
     const std::string name = covariate_name(one.path);
-    if (names.insert(name).second) text.text(name, one.path);
+    if (!names.insert(name).second) continue;
+    if (one.file.empty()) {
+      text.text(name, one.path);
+    } else {
+      text.line(fmt::format("{} = {{ file = {}, field = {} }}", name, toml_string(one.file),
+                            toml_string(one.path)));
+    }
   }
 }
 
 }  // namespace
 
+bool FreeFields::is_free(const NamedFacts& field) const {
+  return !is_taken(field) && field.facts->values > 0 && field.facts->different > 0 &&
+         (!file_ || field.file == *file_);
+}
+
 const NamedFacts* FreeFields::find(const std::vector<Words>& words, const Words& without,
                                    bool text) const {
-  for (const NamedFacts& one : *fields_) {
-    if (is_taken(one) || one.facts->is_text != text || one.facts->values == 0) continue;
-    if (has_word(one.path, without)) continue;
-    if (std::all_of(words.begin(), words.end(),
-                    [&](const Words& any) { return has_word(one.path, any); })) {
-      return &one;
+  for (const bool by_file : {false, true}) {
+    for (const NamedFacts& one : *fields_) {
+      if (!is_free(one) || one.facts->is_text != text || has_word(one.path, without)) continue;
+      if (by_file && one.file.empty()) continue;
+      const std::string name = by_file ? stem_of(one.file) + ' ' + one.path : one.path;
+      if (std::all_of(words.begin(), words.end(),
+                      [&](const Words& any) { return has_word(name, any); })) {
+        return &one;
+      }
     }
   }
   return nullptr;
@@ -128,22 +80,71 @@ bool looks_like_degrees(const LogFieldFacts& facts) {
   return facts.largest - facts.least > kTurn;
 }
 
-Guessed guess_by_names(const std::vector<NamedFacts>& all, bool table, MapText& text) {
+char axis_of(const std::string& path) {
+  const std::vector<std::string> words = words_of(path);
+  for (auto word = words.rbegin(); word != words.rend(); ++word) {
+    const bool number = std::all_of(word->begin(), word->end(),
+                                    [](unsigned char c) { return std::isdigit(c) != 0; });
+    if (number || unit_named(*word)) continue;
+    const char last = word->back();
+    if (last != 'x' && last != 'y' && last != 'z' && last != 'w') return '\0';
+    const std::string before = word->substr(0, word->size() - 1);
+    for (const char* one : {"", "p", "q", "v", "w", "g", "a", "m", "pos", "gyro", "acc", "mag",
+                            "ang", "lin", "rot", "quat", "omega"}) {
+      if (before == one) return last;
+    }
+    return '\0';
+  }
+  return '\0';
+}
+
+std::string stem_of(const std::string& file) {
+  const std::string name = file.substr(file.rfind('/') + 1);
+  return name.substr(0, name.find('.'));
+}
+
+void write_file_of(const NamedFacts& field, MapText& text) {
+  if (!field.file.empty()) text.text("file", field.file);
+}
+
+bool guess_beside(const std::vector<NamedFacts>& all, const Guessed& bag, MapText& text) {
+  FreeFields fields(all);
+  MapText none;
+  const bool truth = guess_truth(fields, bag.truth ? none : text) && !bag.truth;
+  const bool sightings = guess_sightings(fields, text);
+  const bool fixes = guess_fixes(fields, bag.fixes ? none : text) && !bag.fixes;
+  return truth || sightings || fixes;
+}
+
+Guessed guess_by_names(const std::vector<NamedFacts>& all, bool table,
+                       const std::vector<LogClockFacts>& clocks, MapText& text) {
   FreeFields fields(all);
   Guessed found;
-  text.table("time");
   if (table) {
-    found.to_state += guess_column_time(fields, text);
+    found.to_state += guess_times(fields, clocks, text);
   } else {
+    text.table("time");
     guess_log_time(fields, text);
   }
-  const std::optional<int> wheels = guess_wheels(fields, text);
+  // What is called a truth first, lest its poses be taken for an odometry's.
+  MapText truths;
+  const bool truth = guess_truth(fields, truths);
+  std::optional<int> wheels = guess_wheels(fields, text);
+  MapText marks;
+  const bool sightings = guess_sightings(fields, marks);
+  MapText places;
+  const bool fixes = guess_fixes(fields, places);
+  if (wheels) {
+    pass_over_odometries(fields, text);
+  } else {
+    wheels = guess_odometry(fields, text);
+  }
   found.wheels = wheels.has_value();
   found.to_state += wheels.value_or(0);
   guess_headings(fields, text);
-  const bool sightings = guess_sightings(fields, text);
-  const bool fixes = guess_fixes(fields, text);
-  const bool truth = guess_truth(fields, text);
+  text.append(marks);
+  text.append(places);
+  text.append(truths);
   found.places = sightings || fixes || truth;
   guess_covariates(fields, text);
   return found;

@@ -30,16 +30,10 @@ void guess_bearing(const NamedFacts& field, MapText& text) {
 
 /// A field below the message that a sighting is in: the column, or what follows the topic.
 void guess_landmark(const NamedFacts& name, MapText& text) {
-  const bool below = name.path.find('/') != std::string::npos && !name.facts->path.empty();
-  const std::string topic =
-      below ? name.path.substr(0, name.path.size() - name.facts->path.size() - 1) : "";
-  if (below) text.text("topic", topic);
-  if (!below && name.facts->path.empty()) {  // an entry of its own
-    text.text("topic", name.path);
-    text.line("landmark = \".\"");
-  } else {
-    text.text("landmark", name.facts->path);
-  }
+  write_file_of(name, text);
+  const bool entry = name.facts->path.empty();
+  if (!name.topic.empty()) text.text("topic", name.topic);
+  text.text("landmark", entry ? "." : name.facts->path);
 }
 
 /// Which names mean nothing, and whether a reading stays in the rows until the next one.
@@ -58,34 +52,67 @@ void guess_repeats(const NamedFacts& name, const NamedFacts* range, MapText& tex
 }
 
 bool guess_planar_fixes(const FreeFields::Words& words, FreeFields& fields, MapText& text) {
-  const NamedFacts* x = fields.take({words, {"x", "east"}});
-  const NamedFacts* y = x == nullptr ? nullptr : fields.take({words, {"y", "north"}});
-  if (y == nullptr) return false;
-  text.blank();
-  text.table("fixes");
-  text.text("x", x->facts->path);
-  text.text("y", y->facts->path);
-  if (const auto unit = unit_in(x->path); is_of(unit, {Quantity::length})) {
-    text.text("unit", std::string(unit->name));
+  for (const NamedFacts& x : fields.all()) {
+    const auto fits = [&](const NamedFacts& one, char axis, const char* direction) {
+      const std::string name = stem_of(one.file) + ' ' + one.path;
+      const bool along = axis_of(one.path) == axis || has_word(one.path, {direction});
+      return fields.is_free(one) && !one.facts->is_text && has_word(name, words) && along &&
+             one.file == x.file && one.topic == x.topic &&
+             !has_word(one.path, {"cov", "vel", "speed", "acc", "zone"});
+    };
+    if (!fits(x, 'x', "east")) continue;
+    for (const NamedFacts& y : fields.all()) {
+      if (!fits(y, 'y', "north")) continue;
+      fields.mark_taken(x);
+      fields.mark_taken(y);
+      text.blank();
+      text.table("fixes");
+      write_file_of(x, text);
+      if (!x.topic.empty()) text.text("topic", x.topic);
+      text.text("x", x.facts->path);
+      text.text("y", y.facts->path);
+      if (const auto unit = unit_in(x.path); is_of(unit, {Quantity::length})) {
+        text.text("unit", std::string(unit->name));
+      }
+      return true;
+    }
   }
-  return true;
+  return false;
+}
+
+/// The name of a landmark: a text, or a whole number, and neither a speed nor a count of rows.
+const NamedFacts* landmark_in(const FreeFields& fields) {
+  static const FreeFields::Words kMarks{"tag",      "landmark", "marker",  "code", "beacon",
+                                        "fiducial", "aruco",    "station", "rfid", "anchor"};
+  static const FreeFields::Words kNot{
+      "range",    "dist",  "bearing", "angle", "yaw",  "time",   "pose",       "linear", "twist",
+      "position", "speed", "vel",     "frame", "type", "family", "stationary", "seq",    "header"};
+  for (const bool text : {true, false}) {
+    for (const bool by_file : {false, true}) {
+      for (const NamedFacts& one : fields.all()) {
+        if (!fields.is_free(one) || one.facts->is_text != text || has_word(one.path, kNot))
+          continue;
+        if (!text && (!one.facts->is_whole || axis_of(one.path) != '\0')) continue;
+        const bool called = has_word(one.path, kMarks) || has_word(one.path, {"=line"});
+        const bool by_its_file = !one.file.empty() && has_word(stem_of(one.file), kMarks) &&
+                                 (text || has_word(one.path, {"id", "name", "number", "label"}));
+        if (by_file ? by_its_file : called) return &one;
+      }
+    }
+  }
+  return nullptr;
 }
 
 }  // namespace
 
 bool guess_sightings(FreeFields& fields, MapText& text) {
-  static const FreeFields::Words kMarks{"tag",      "landmark", "marker",  "code", "beacon",
-                                        "fiducial", "aruco",    "station", "rfid", "line"};
-  const NamedFacts* range =
-      fields.find({{"range", "distance", "dist"}}, {"truth", "left", "right"});
-  const NamedFacts* bearing =
-      fields.find({{"bearing", "azimuth", "angle", "tx"}}, {"truth", "left", "right"});
-  const NamedFacts* name =
-      fields.find({kMarks}, {"range", "dist", "bearing", "angle", "yaw", "time"}, true);
-  if (name == nullptr) {
-    name = fields.find({kMarks}, {"range", "dist", "bearing", "angle", "yaw", "time", "_x", "_y"});
-  }
+  const NamedFacts* name = landmark_in(fields);
   if (name == nullptr) return false;
+  fields.look_at(name->file);
+  static const FreeFields::Words kNot{"truth", "left", "right", "std", "sd", "cov"};
+  const NamedFacts* range = fields.find({{"range", "distance", "dist"}}, kNot);
+  const NamedFacts* bearing = fields.find({{"bearing", "azimuth", "angle", "tx"}}, kNot);
+  fields.look_at(std::nullopt);
   text.blank();
   text.list("sightings",
             range == nullptr && bearing == nullptr ? "the robot stands on what it names" : "");
@@ -105,38 +132,19 @@ bool guess_sightings(FreeFields& fields, MapText& text) {
 
 bool guess_fixes(FreeFields& fields, MapText& text) {
   const NamedFacts* latitude = fields.take({{"latitude", "lat"}}, {"latency", "left"});
+  if (latitude != nullptr) fields.look_at(latitude->file);
   const NamedFacts* longitude =
       latitude == nullptr ? nullptr : fields.take({{"longitude", "lon", "lng"}});
+  fields.look_at(std::nullopt);
   if (longitude != nullptr) {
     text.blank();
     text.table("fixes", "x to the east and y to the north of the first");
+    write_file_of(*latitude, text);
     text.text("latitude", latitude->facts->path);
     text.text("longitude", longitude->facts->path);
     return true;
   }
   return guess_planar_fixes({"gps", "gnss", "uwb", "fix", "utm", "east"}, fields, text);
-}
-
-bool guess_truth(FreeFields& fields, MapText& text) {
-  static const FreeFields::Words kTruth{"truth", "true", "mocap", "vicon", "opti", "ground", "gt_"};
-  const NamedFacts* x = fields.take({kTruth, {"x"}});
-  const NamedFacts* y = x == nullptr ? nullptr : fields.take({kTruth, {"y"}}, {"yaw"});
-  const NamedFacts* heading =
-      y == nullptr ? nullptr : fields.take({kTruth, {"heading", "yaw", "theta", "angle", "th"}});
-  if (heading == nullptr) return false;
-  text.blank();
-  text.table("truth");
-  text.text("x", x->path);
-  text.text("y", y->path);
-  text.text("heading", heading->path);
-  if (const auto unit = unit_in(x->path); is_of(unit, {Quantity::length})) {
-    text.text("unit", std::string(unit->name));
-  }
-  const auto unit = unit_in(heading->path);
-  const bool degrees =
-      is_of(unit, {Quantity::angle}) ? unit->name == "deg" : looks_like_degrees(*heading->facts);
-  text.text("heading_unit", degrees ? "deg" : "rad");
-  return true;
 }
 
 }  // namespace trussmap

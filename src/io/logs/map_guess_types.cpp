@@ -276,8 +276,6 @@ void covariates_by_type(const LogSurvey& survey, MapText& text) {
 }  // namespace
 
 Guessed guess_by_types(const LogSurvey& survey, MapText& text) {
-  text.table("time");
-  text.text("from", "stamp", "header.stamp, and where there is none when it was recorded (log)");
   Guessed found;
   const std::optional<int> wheels = wheels_by_type(survey, text);
   found.wheels = wheels.has_value();

@@ -29,6 +29,7 @@ class MapText {
     if (!why.empty()) text_ += "   # " + one_line(why);
     text_ += '\n';
   }
+  void append(const MapText& other) { text_ += other.text_; }
   [[nodiscard]] const std::string& str() const { return text_; }
 
  private:

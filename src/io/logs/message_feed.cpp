@@ -6,6 +6,7 @@
 #include "io/logs/calendar.hpp"
 #include "io/logs/pose_fields.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/table.hpp"
 
 #include <cmath>
 
@@ -16,91 +17,206 @@ namespace {
 
 constexpr double kLargestTime = 4e18;  // ns
 
+/// ns of a number, in units of so many; none where it is none.
+std::optional<std::int64_t> number_time(FieldRef field, double unit) {
+  const double in_ns = unit * static_cast<double>(kNanosecondsPerSecond);
+  if (!field.is_number()) return std::nullopt;
+  const bool whole_unit = in_ns >= 1.0;
+  if (whole_unit && !field.field().text.empty()) {
+    return decimal_time(field.field().text, std::llround(in_ns));
+  }
+  const double t = field.number() * in_ns;
+  if (!(std::abs(t) < kLargestTime)) return std::nullopt;
+  if (field.kind() == FieldKind::integer && whole_unit) {
+    return field.field().integer * static_cast<std::int64_t>(std::llround(in_ns));
+  }
+  return static_cast<std::int64_t>(std::llround(t));
+}
+
+/// As it stands in the log, for a message.
+std::string shown(FieldRef field) {
+  constexpr std::size_t kMost = 40;
+  const std::string text(field.field().text);
+  return text.empty() ? "it is empty" : '"' + shortened(text, kMost) + '"';
+}
+
 }  // namespace
 
 std::int64_t nanoseconds(double seconds) {
-  return static_cast<std::int64_t>(
-      std::llround(seconds * static_cast<double>(kNanosecondsPerSecond)));
+  // As it was written: 1748457035.65 in binary is 95 ns more.
+  const auto exact = decimal_time(fmt::format("{}", seconds), kNanosecondsPerSecond);
+  return exact.value_or(static_cast<std::int64_t>(
+      std::llround(seconds * static_cast<double>(kNanosecondsPerSecond))));
 }
 
-void MessageFeeds::add(const std::string& path, std::size_t line, Take take) {
-  feeds_.push_back({path, line, false, std::move(take)});
+std::string below_topic(const std::string& path, const LogTopic& topic) {
+  return topic.table ? path : path.substr(std::min(topic.name.size() + 1, path.size()));
 }
 
-void MessageFeeds::add_message(const std::string& path, std::size_t line, Take take) {
-  feeds_.push_back({path, line, true, std::move(take)});
+MessageFeeds::MessageFeeds(const LogMap& map, const JoinedLogs& logs) : map_(&map), logs_(&logs) {
+  static const TimeMap kStamps;
+  times_.assign(logs.size(), nullptr);
+  for (std::size_t log = 0; log < logs.size(); ++log) {
+    if (!logs.is_table(log)) times_[log] = &kStamps;
+  }
+  for (const TimeMap& time : map.times) {
+    if (time.file.empty()) std::fill(times_.begin(), times_.end(), &time);
+  }
+  for (const TimeMap& time : map.times) {
+    if (time.file.empty()) continue;
+    const AskedField asked{time.field, time.file, time.line};
+    times_[log_of(asked).value_or(0)] = &time;
+  }
+}
+
+std::optional<std::size_t> MessageFeeds::log_of(const AskedField& asked) const {
+  if (!asked.file.empty()) {
+    try {
+      return logs_->named(asked.file);
+    } catch (const std::invalid_argument& error) {
+      throw InputError(map_->file.string(), asked.line, error.what());
+    }
+  }
+  if (logs_->size() == 1) return 0;
+  for (std::size_t log = 0; log < logs_->size(); ++log) {
+    if (!logs_->is_table(log)) return std::nullopt;
+  }
+  throw InputError(map_->file.string(), asked.line,
+                   fmt::format("the table has no file, expected file = one of {}, whose column "
+                               "\"{}\" is",
+                               logs_->all_names(), asked.path));
+}
+
+void MessageFeeds::add(const AskedField& asked, Take take) {
+  feeds_.push_back({asked.path, asked.line, log_of(asked), false, std::move(take)});
+}
+
+void MessageFeeds::add_message(const AskedField& asked, Take take) {
+  feeds_.push_back({asked.path, asked.line, log_of(asked), true, std::move(take)});
+}
+
+bool MessageFeeds::is_of(const Feed& feed, const LogTopic& topic) const {
+  const bool here = feed.log ? *feed.log == topic.input : !topic.table;
+  return here && is_of_topic(feed.path, topic);
 }
 
 bool MessageFeeds::wants(const LogTopic& topic) const {
   return std::any_of(feeds_.begin(), feeds_.end(),
-                     [&](const Feed& feed) { return is_of_topic(feed.path, topic); });
+                     [&](const Feed& feed) { return is_of(feed, topic); });
+}
+
+bool MessageFeeds::wants_of(std::size_t log) const {
+  return std::any_of(feeds_.begin(), feeds_.end(), [&](const Feed& feed) {
+    return feed.log ? *feed.log == log : !logs_->is_table(log);
+  });
+}
+
+std::string MessageFeeds::place_of(const LogMessage& message) const {
+  const std::string& name = logs_->path(message.topic.input).string();
+  if (message.line > 0) return fmt::format("{}:{}", name, message.line);
+  return message.topic.name.empty() ? name : name + ", " + message.topic.name;
+}
+
+std::int64_t MessageFeeds::field_time(const LogMessage& message, const TimeMap& time) {
+  auto known = time_paths_.find(message.number);
+  if (known == time_paths_.end()) {
+    const bool table = message.topic.table;
+    known = time_paths_
+                .emplace(message.number,
+                         TimePaths{FieldPath(time.field, table), FieldPath(time.fraction, table)})
+                .first;
+  }
+  const auto find = [&](const FieldPath& path, const std::string& name) {
+    const auto field = path.find(message.fields);
+    if (field) return *field;
+    throw InputError(map_->file.string(), time.line,
+                     fmt::format("[time]: field {} is not in a message of {}, expected in all; it "
+                                 "has {}",
+                                 name, logs_->path(message.topic.input).string(),
+                                 listed_fields(message.fields)));
+  };
+  const auto value = [&](FieldRef field, const std::string& name, double unit) {
+    if (const auto t = number_time(field, unit)) return *t;
+    throw InputError(
+        logs_->path(message.topic.input).string(), message.line,
+        fmt::format("[time]: field {} is no time ({}), expected a number", name, shown(field)));
+  };
+  const FieldRef field = find(known->second.field, time.field);
+  if (time.calendar) {
+    const auto t = calendar_time(as_text(field));
+    if (t) return *t;
+    throw InputError(logs_->path(message.topic.input).string(), message.line,
+                     fmt::format("[time]: field {} is no date and time ({}), expected "
+                                 "2026-03-01T12:30:00.25",
+                                 time.field, shown(field)));
+  }
+  const std::int64_t t = value(field, time.field, time.unit);
+  if (time.fraction.empty()) return t;
+  return t + value(find(known->second.fraction, time.fraction), time.fraction, time.fraction_unit);
 }
 
 std::int64_t MessageFeeds::time_of(const LogMessage& message, FieldRef timed) {
-  switch (map_->time.from) {
-    case TimeMap::From::stamp:
-      if (const auto stamp = stamp_of(timed)) return *stamp;
-      break;
-    case TimeMap::From::log:
-      break;
-    case TimeMap::From::publish:
-      return message.publish_time;
-    case TimeMap::From::field: {
-      if (!times_.contains(message.number)) {
-        times_.emplace(message.number, FieldPath(map_->time.field, message.topic.table));
-      }
-      const auto field = times_.at(message.number).find(message.fields);
-      const auto fail = [this](const std::string& what) {
-        throw InputError(map_->file.string(), 0, "[time]: field " + map_->time.field + what);
-      };
-      if (!field) fail(" is not in a message, expected in all");
-      if (map_->time.calendar) {
-        const auto t = calendar_time(as_text(*field));
-        if (!t) fail(" is no date and time, expected 2026-03-01T12:30:00.25");
-        return *t;
-      }
-      const double unit = map_->time.unit * static_cast<double>(kNanosecondsPerSecond);
-      const double t = field->number() * unit;
-      if (!(std::abs(t) < kLargestTime)) fail(" is no time, expected a number");
-      const bool whole = field->kind() == FieldKind::integer && unit >= 1.0;
-      return whole ? field->field().integer * static_cast<std::int64_t>(std::llround(unit))
-                   : static_cast<std::int64_t>(std::llround(t));
+  const TimeMap* time = times_[message.topic.input];
+  if (time != nullptr) {
+    const std::int64_t clock = nanoseconds(time->clock);
+    if (time->from == TimeMap::From::field) return clock + field_time(message, *time);
+    if (time->from == TimeMap::From::publish && message.has_time) {
+      return clock + message.publish_time;
     }
+    if (time->from == TimeMap::From::stamp) {
+      if (const auto stamp = stamp_of(timed)) return clock + *stamp;
+    }
+    if (message.has_time) return clock + message.log_time;
   }
-  if (message.has_time) return message.log_time;
-  throw InputError(map_->file.string(), 0,
-                   "the log's messages have no times, expected [time] with the field that is one");
+  throw InputError(
+      map_->file.string(), 0,
+      fmt::format("the messages of {} have no times, expected {} with the field that "
+                  "is one, of {}",
+                  logs_->all_names() == logs_->path(0).string() ? "the log"
+                                                                : logs_->name(message.topic.input),
+                  logs_->size() > 1 ? "a [[time]] of this file" : "[time]",
+                  listed_fields(message.fields)));
+}
+
+/// Which feeds are of its topic.
+void MessageFeeds::meet(const LogMessage& message) {
+  std::vector<Feed*>& known = by_topic_[message.number];
+  for (Feed& feed : feeds_) {
+    if (!is_of(feed, message.topic)) continue;
+    try {
+      feed.by_topic.emplace(message.number, feed.whole
+                                                ? FieldPath()
+                                                : FieldPath::below_topic(feed.path, message.topic));
+    } catch (const std::invalid_argument& error) {
+      throw InputError(map_->file.string(), feed.line, error.what());
+    }
+    known.push_back(&feed);
+  }
 }
 
 void MessageFeeds::take(const LogMessage& message) {
-  auto known = by_topic_.find(message.number);
-  if (known == by_topic_.end()) {
-    known = by_topic_.emplace(message.number, std::vector<Feed*>()).first;
-    for (Feed& feed : feeds_) {
-      if (!is_of_topic(feed.path, message.topic)) continue;
-      try {
-        feed.by_topic.emplace(
-            message.number,
-            feed.whole ? FieldPath() : FieldPath::below_topic(feed.path, message.topic));
-      } catch (const std::invalid_argument& error) {
-        throw InputError(map_->file.string(), feed.line, error.what());
-      }
-      known->second.push_back(&feed);
-    }
-  }
-  if (known->second.empty()) return;
+  if (!by_topic_.contains(message.number)) meet(message);
   std::optional<std::int64_t> t;  // of whoever shares the beginning of a path it need not be there
-  for (Feed* feed : known->second) {
+  for (Feed* feed : by_topic_.at(message.number)) {
     const auto field = feed->by_topic.at(message.number).find(message.fields);
     if (feed->fields.empty()) feed->fields = listed_fields(message.fields);
     if (!field) continue;
     if (!t) t = time_of(message, message.fields);
-    if (feed->take({message.topic, message.fields, *field, *t})) {
+    blamed_.clear();
+    if (feed->take({message.topic, message.fields, *field, *t, message.row})) {
       ++feed->taken;
     } else {
       ++feed->refused;
+      if (!first_refused_.empty()) continue;
+      if (blamed_.empty()) blame(feed->path, *field);
+      first_refused_ = place_of(message) + ", " + blamed_;
     }
   }
+}
+
+void MessageFeeds::blame(const std::string& path, FieldRef field) {
+  const bool one = field.kind() != FieldKind::group && field.kind() != FieldKind::list;
+  blamed_ = path + (one ? ": " + shown(field) : "");
 }
 
 std::size_t MessageFeeds::refused() const {
@@ -109,20 +225,19 @@ std::size_t MessageFeeds::refused() const {
   return count;
 }
 
-void MessageFeeds::check(const std::filesystem::path& log, const LogEnd& end) const {
+void MessageFeeds::check(const LogEnd& end) const {
   for (const Feed& feed : feeds_) {
-    if (feed.taken == 0) fail(feed, log, end);
+    if (feed.taken == 0) fail(feed, end);
   }
 }
 
-void MessageFeeds::fail(const Feed& feed, const std::filesystem::path& log,
-                        const LogEnd& end) const {
+void MessageFeeds::fail(const Feed& feed, const LogEnd& end) const {
   const std::string& file = map_->file.string();
-  const std::string name = log.string();
+  const std::string name = feed.log ? logs_->path(*feed.log).string() : logs_->all_names();
   std::string topics;
   std::size_t named = 0;
   for (const LogTopic& topic : end.topics) {
-    if (is_of_topic(feed.path, topic) && !topic.unread.empty()) {
+    if (is_of(feed, topic) && !topic.unread.empty()) {
       throw InputError(file, feed.line,
                        fmt::format("{} cannot be read from {}: {}", feed.path, name, topic.unread));
     }
@@ -136,9 +251,16 @@ void MessageFeeds::fail(const Feed& feed, const std::filesystem::path& log,
                                  feed.path, name, feed.refused));
   }
   if (!feed.fields.empty()) {
-    throw InputError(
-        file, feed.line,
-        fmt::format("{} has no field {}, expected one of {}", name, feed.path, feed.fields));
+    std::string elsewhere;
+    for (const Feed& other : feeds_) {
+      if (other.log && feed.log && *other.log != *feed.log && !other.fields.empty() &&
+          ("," + other.fields + ",").find(" " + feed.path + ",") != std::string::npos) {
+        elsewhere = "; " + logs_->name(*other.log) + " has it";
+      }
+    }
+    throw InputError(file, feed.line,
+                     fmt::format("{} has no field {}, expected one of {}{}", name, feed.path,
+                                 feed.fields, elsewhere));
   }
   throw InputError(
       file, feed.line,

@@ -34,6 +34,8 @@ struct LogTopic {
   /// Fields are named by the columns of a table, which may have any characters in them.
   bool table = false;
   std::uint64_t messages = 0;  ///< so far
+  std::string file = {};       ///< of several logs read as one (joined_logs.hpp): which
+  std::size_t input = 0;       ///< the same, by its number
 };
 
 struct LogMessage {
@@ -43,6 +45,8 @@ struct LogMessage {
   std::int64_t log_time = 0;      ///< ns since the log's own epoch (Unix, of bags): recorded
   std::int64_t publish_time = 0;  ///< ns: sent; log_time where the log does not know
   FieldRef fields;                ///< valid until the visit returns
+  std::size_t line = 0;           ///< of a table: where the row begins
+  std::uint64_t row = 0;          ///< of a table: the same for rows with the same text alone
 };
 
 struct LogVisit {

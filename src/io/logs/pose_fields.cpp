@@ -24,6 +24,12 @@ std::optional<Eigen::Vector3d> vector_at(FieldRef group) {
   return Eigen::Vector3d(*x, *y, number_at(group, "z").value_or(0.0));
 }
 
+std::optional<Eigen::Quaterniond> unit_quaternion(double x, double y, double z, double w) {
+  const Eigen::Quaterniond quaternion(w, x, y, z);
+  if (!(std::abs(quaternion.norm() - 1.0) < kUnit)) return std::nullopt;
+  return quaternion.normalized();
+}
+
 std::optional<Eigen::Quaterniond> quaternion_at(FieldRef group) {
   const FieldRef within = group.member("q").value_or(group);  // WPILib's Rotation3d
   for (const auto& [x, y, z, w] :
@@ -33,9 +39,7 @@ std::optional<Eigen::Quaterniond> quaternion_at(FieldRef group) {
     const auto qz = number_at(within, z);
     const auto qw = number_at(within, w);
     if (!qx || !qy || !qz || !qw) continue;
-    const Eigen::Quaterniond quaternion(*qw, *qx, *qy, *qz);
-    if (!(std::abs(quaternion.norm() - 1.0) < kUnit)) return std::nullopt;
-    return quaternion.normalized();
+    return unit_quaternion(*qx, *qy, *qz, *qw);
   }
   for (const char* name : {"value", "theta", "heading", "yaw"}) {
     if (const auto angle = number_at(group, name)) {
@@ -100,6 +104,12 @@ std::optional<FieldTwist> twist_of(FieldRef field) {
 std::optional<double> yaw_of_quaternion(FieldRef field) {
   if (field.kind() != FieldKind::group) return std::nullopt;
   const auto quaternion = quaternion_at(field);
+  if (!quaternion) return std::nullopt;
+  return FieldPose{Eigen::Vector3d::Zero(), *quaternion, true}.yaw();
+}
+
+std::optional<double> yaw_of_quaternion(double x, double y, double z, double w) {
+  const auto quaternion = unit_quaternion(x, y, z, w);
   if (!quaternion) return std::nullopt;
   return FieldPose{Eigen::Vector3d::Zero(), *quaternion, true}.yaw();
 }

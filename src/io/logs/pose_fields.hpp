@@ -41,6 +41,8 @@ struct FieldTwist {
 [[nodiscard]] std::optional<FieldTwist> twist_of(FieldRef field);
 /// Of a group x, y, z, w, and of length 1; rad.
 [[nodiscard]] std::optional<double> yaw_of_quaternion(FieldRef field);
+/// The same of its four numbers.
+[[nodiscard]] std::optional<double> yaw_of_quaternion(double x, double y, double z, double w);
 /// ns; none where there is none, or it is 0.
 [[nodiscard]] std::optional<std::int64_t> stamp_of(FieldRef message);
 /// header.frame_id; empty where there is none.

@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLargestDefinition = std::size_t{1} << 20U;    // bytes
-constexpr std::size_t kLargestDefinitions = std::size_t{32} << 20U;  // all together
+constexpr std::size_t kLongestStored = std::size_t{1} << 20U;     // bytes
+constexpr std::size_t kMostStoredBytes = std::size_t{32} << 20U;  // all together
 constexpr std::size_t kMostBagTopics = 65536;
 constexpr int kMostPages = -16 * 1024;  // KiB of memory for pages of the file
 
@@ -175,9 +175,9 @@ class Rosbag2Reader {
 
   void keep(std::size_t bytes) {
     kept_ += bytes;
-    if (kept_ > kLargestDefinitions) {
+    if (kept_ > kMostStoredBytes) {
       database_->fail("the descriptions of topics have more than " +
-                      std::to_string(kLargestDefinitions) + " bytes");
+                      std::to_string(kMostStoredBytes) + " bytes");
     }
   }
 
@@ -190,7 +190,7 @@ class Rosbag2Reader {
       TypeDefinition one;
       one.encoding = rows.bytes(1);
       const std::string_view text = rows.bytes(2);
-      one.kept = text.size() <= kLargestDefinition;
+      one.kept = text.size() <= kLongestStored;
       if (one.kept && one.encoding == "ros2msg") one.text = text;
       keep(type.size() + one.encoding.size() + one.text.size());
       definitions_.try_emplace(type, std::move(one));

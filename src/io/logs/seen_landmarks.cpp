@@ -85,6 +85,33 @@ void add_messages(const GatheredLog& log, SightingCounts& counts,
   }
 }
 
+bool is_same(const SeenSighting& a, const SeenSighting& b) {
+  const auto same = [](double one, double other) {
+    return one == other || (one != one && other != other);
+  };
+  return a.t == b.t && a.sighting.landmark == b.sighting.landmark &&
+         same(a.sighting.range, b.sighting.range) && same(a.sighting.bearing, b.sighting.bearing) &&
+         same(a.sighting.yaw, b.sighting.yaw);
+}
+
+/// A reading that is there twice is one reading.
+std::size_t drop_repeated(std::vector<SeenSighting>& sorted) {
+  std::size_t kept = 0;
+  std::size_t first = 0;  // kept of this time
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    if (kept > 0 && sorted[kept - 1].t != sorted[k].t) first = kept;
+    const auto begin = sorted.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(kept);
+    const auto twin = [&](const SeenSighting& other) { return is_same(other, sorted[k]); };
+    if (std::any_of(begin, end, twin)) continue;
+    if (kept != k) sorted[kept] = std::move(sorted[k]);
+    ++kept;
+  }
+  const std::size_t dropped = sorted.size() - kept;
+  sorted.resize(kept);
+  return dropped;
+}
+
 }  // namespace
 
 std::vector<SeenSighting> seen_sightings(const LogMap& map, const GatheredLog& log,
@@ -96,6 +123,7 @@ std::vector<SeenSighting> seen_sightings(const LogMap& map, const GatheredLog& l
   add_messages(log, counts, found);
   std::stable_sort(found.begin(), found.end(),
                    [](const SeenSighting& a, const SeenSighting& b) { return a.t < b.t; });
+  counts.repeated = drop_repeated(found);
   return found;
 }
 

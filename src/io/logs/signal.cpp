@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/signal.hpp"
 
+#include "io/logs/message_feed.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -32,28 +34,52 @@ double Signal::typical_step() const {
 }
 
 void Signal::finish() {
-  const auto clock = static_cast<std::int64_t>(std::llround(map_.clock / kNanosecond));
+  const std::int64_t clock = nanoseconds(map_.clock);
   for (std::int64_t& t : t_) t += clock;
+  sort();
+  join_equal_times();
+  if (map_.on_change > 0.0) hold_until_changes();
+  if (map_.wraps > 0.0 && map_.kind == SignalMap::Kind::cumulative) unwrap();
+  for (double& one : value_) one = map_.scale * one + map_.offset;
+}
+
+void Signal::sort() {
   for (std::size_t k = 1; k < t_.size(); ++k) unordered_ += t_[k] < t_[k - 1] ? 1U : 0U;
-  if (unordered_ > 0) {
-    std::vector<std::size_t> order(t_.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [this](std::size_t a, std::size_t b) { return t_[a] < t_[b]; });
-    std::vector<std::int64_t> t;
-    std::vector<double> value;
-    for (const std::size_t k : order) {
-      t.push_back(t_[k]);
-      value.push_back(value_[k]);
-    }
-    t_ = std::move(t);
-    value_ = std::move(value);
+  if (unordered_ == 0) return;
+  std::vector<std::size_t> order(t_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [this](std::size_t a, std::size_t b) { return t_[a] < t_[b]; });
+  const auto sorted = [&order](const auto& values) {
+    auto result = values;
+    for (std::size_t k = 0; k < values.size(); ++k) result[k] = values[order[k]];
+    return result;
+  };
+  t_ = sorted(t_);
+  value_ = sorted(value_);
+  row_ = sorted(row_);
+}
+
+/// Whether rows that are the same, time and all, are one row written twice: not where the clock is
+/// so coarse that different rows have the same time as often.
+bool Signal::repeats_rows() const {
+  std::size_t same = 0;
+  std::size_t others = 0;
+  for (std::size_t k = 1; k < row_.size(); ++k) {
+    if (t_[k] != t_[k - 1] || row_[k] == 0) continue;
+    ++(row_[k] == row_[k - 1] ? same : others);
   }
+  return same > others;
+}
+
+void Signal::join_equal_times() {
+  const bool adds = map_.kind == SignalMap::Kind::per_row;
+  const bool once = adds && repeats_rows();
   std::size_t kept = 0;
   for (std::size_t k = 0; k < t_.size(); ++k) {
     if (kept > 0 && t_[k] == t_[kept - 1]) {
       ++repeated_;
-      const bool adds = map_.kind == SignalMap::Kind::per_row;
+      if (once && row_[k] == row_[k - 1]) continue;
       value_[kept - 1] = adds ? value_[kept - 1] + value_[k] : value_[k];
       continue;
     }
@@ -62,9 +88,6 @@ void Signal::finish() {
   }
   t_.resize(kept);
   value_.resize(kept);
-  if (map_.on_change > 0.0) hold_until_changes();
-  if (map_.wraps > 0.0 && map_.kind == SignalMap::Kind::cumulative) unwrap();
-  for (double& one : value_) one = map_.scale * one + map_.offset;
 }
 
 /// What is written only when it changes had its old value until a cycle before.

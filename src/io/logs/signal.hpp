@@ -22,14 +22,15 @@ class Signal {
  public:
   explicit Signal(const SignalMap& map) : map_(map) {}
 
-  /// In the order of the log.
-  void add(std::int64_t t, double field) {
+  /// In the order of the log. `row`: LogMessage::row.
+  void add(std::int64_t t, double field, std::uint64_t row = 0) {
     t_.push_back(t);
     value_.push_back(field);
+    if (map_.kind == SignalMap::Kind::per_row) row_.push_back(row);
   }
 
-  /// After the last add: in order of time, unwrapped, in SI. Of equal times the last counts (of
-  /// what comes per message: their sum).
+  /// After the last add: in order of time, unwrapped, in SI. Of equal times the last counts; of
+  /// what comes per message their sum, without rows of a table that are there twice.
   void finish();
 
   [[nodiscard]] bool empty() const { return t_.empty(); }
@@ -51,12 +52,16 @@ class Signal {
   [[nodiscard]] bool has_sample(std::int64_t from, std::int64_t to) const;
 
  private:
+  void sort();
+  void join_equal_times();
+  [[nodiscard]] bool repeats_rows() const;
   void hold_until_changes();
   void unwrap();
 
   SignalMap map_;
   std::vector<std::int64_t> t_;
   std::vector<double> value_;
+  std::vector<std::uint64_t> row_;  ///< of what comes per message
   std::size_t unordered_ = 0;
   std::size_t repeated_ = 0;
   std::size_t at_ = 0;  ///< of sum: the first sample after the last interval's start

@@ -3,6 +3,7 @@
 #include "io/logs/signal_map.hpp"
 
 #include "geometry/units.hpp"
+#include "io/logs/motion_map.hpp"
 
 #include <algorithm>
 
@@ -44,7 +45,10 @@ SignalMap::Kind kind_of(TomlFields& table, SignalMap::Kind otherwise) {
 SignalMap signal_of(TomlFields& table) {
   SignalMap signal;
   signal.line = table.line();
-  signal.field = table.needed_text("field");
+  signal.file = table.text("file");
+  signal.quaternion_fields = quaternion_of(table);
+  signal.quaternion = !signal.quaternion_fields.empty();
+  signal.field = signal.quaternion ? signal.quaternion_fields.front() : table.needed_text("field");
   signal.clock = table.clock();
   signal.on_change = table.positive("on_change", 0.0);
   return signal;
@@ -114,7 +118,7 @@ SignalMap wheel_of(const toml::table& node, const std::string& file, const std::
 SignalMap heading_of(const toml::table& node, const std::string& file) {
   TomlFields table(node, file, "[heading]");
   SignalMap signal = signal_of(table);
-  signal.quaternion = table.text("unit", "rad") == "quaternion";
+  signal.quaternion = signal.quaternion || table.text("unit", "rad") == "quaternion";
   const double si = signal.quaternion ? 1.0 : unit_of(table, "unit", "rad", {Quantity::angle}).si;
   signal.scale = si * table.sign("sign");
   signal.offset = si * table.number("offset", 0.0);
@@ -128,7 +132,7 @@ SignalMap heading_of(const toml::table& node, const std::string& file) {
 SignalMap yaw_rate_of(const toml::table& node, const std::string& file) {
   TomlFields table(node, file, "[yaw_rate]");
   SignalMap signal = signal_of(table);
-  signal.quaternion = table.text("unit", "rad/s") == "quaternion";
+  signal.quaternion = signal.quaternion || table.text("unit", "rad/s") == "quaternion";
   if (signal.quaternion) {
     signal.kind = SignalMap::Kind::cumulative;
     signal.scale = table.sign("sign");

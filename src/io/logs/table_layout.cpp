@@ -3,6 +3,7 @@
 #include "io/logs/table_layout.hpp"
 
 #include "io/csv_record.hpp"
+#include "io/logs/echoed_message.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -129,6 +130,21 @@ std::vector<std::string> unique(std::vector<std::string> names) {
   return names;
 }
 
+/// Without a header: by the fields of the message that the rows are.
+void name_echoed(const std::vector<std::string>& records, TableLayout& layout) {
+  if (layout.separator != ',') return;
+  std::vector<std::vector<std::string>> rows;
+  CsvRecord record;
+  for (const std::string& one : records) {
+    record.read(one, 0, layout.separator, true);
+    const bool whole = record.wrong() == nullptr && record.fields().size() == layout.columns.size();
+    if (whole) rows.emplace_back(record.fields().begin(), record.fields().end());
+  }
+  if (rows.empty()) return;
+  std::vector<std::string> names = echoed_columns(rows);
+  if (!names.empty()) layout.columns = std::move(names);
+}
+
 bool could_be_unit(std::string_view text) {
   constexpr std::size_t kLongest = 16;  // bytes
   return text.size() <= kLongest && text.find('\n') == std::string_view::npos;
@@ -215,6 +231,7 @@ TableLayout table_layout(const std::vector<std::string>& records, std::string_vi
     layout.header = names;
     layout.columns.resize(first.size());
     if (names) layout.columns.assign(named.begin(), named.end());
+    if (!names) name_echoed(rest, layout);
   } else {
     layout.header = true;
     ++layout.first_row;

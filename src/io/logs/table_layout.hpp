@@ -6,7 +6,8 @@
 //   separator   ',' ';' tab, or ' ' for any blanks: the one by which the rows have equally many
 //               fields, and the most numbers in them; or as a first line "sep=;" says
 //   columns     by the first row; by a comment right before it (rostopic's "%time,x"; numpy's "# t
-//               x") where the first row is of numbers; else "column 1", "column 2", ...
+//               x") where the first row is of numbers; by the standard message that the rows are
+//               (echoed_message.hpp); else "column 1", "column 2", ...
 //   units       a second row without a number ("[s],[mm]"), before one with: "name [s]"
 //
 // A first row that holds numbers alone is no header, nor one whose numbers and texts stand where

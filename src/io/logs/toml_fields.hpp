@@ -61,9 +61,9 @@ class TomlFields {
   /// s that are added to times.
   double clock() {
     const double value = number("clock", 0.0);
-    constexpr double kYears = 1e8;
-    if (std::abs(value) > kYears) {
-      fail(*table_->get("clock"), "clock is more than 1e8 s, expected less");
+    constexpr double kLargest = 1e10;  // from a clock since the start to one since 1900
+    if (std::abs(value) > kLargest) {
+      fail(*table_->get("clock"), "clock is more than 1e10 s, expected less");
     }
     return value;
   }

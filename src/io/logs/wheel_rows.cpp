@@ -94,7 +94,8 @@ std::vector<NamedSignal> all_wheels(const LogMap& map, GatheredLog& log, WheelRo
                                    "others, expected [wheels.NAME] for each of its columns",
                                    name_of(robot.drive)));
     }
-    if (!map.odometry.twist.empty()) return wheels_of(log.twists, robot.wheelbase, rows.warnings);
+    const bool twist = !map.odometry.twist.empty() || !map.odometry.speed.empty();
+    if (twist) return wheels_of(log.twists, robot.wheelbase, rows.warnings);
     std::vector<TimedFieldPose> poses = log.odometry;
     if (is_frame_path(map.odometry.pose)) {
       poses =
@@ -121,6 +122,27 @@ std::vector<NamedSignal> all_wheels(const LogMap& map, GatheredLog& log, WheelRo
     }
   }
   return wheels;
+}
+
+/// Poses that stand still although the velocities beside them do not are none of an odometry; and
+/// of what never moves it is said.
+void check_that_it_moves(const LogMap& map, const GatheredLog& log, WheelRows& rows) {
+  const auto moves = [](const std::vector<double>& travels) {
+    return std::any_of(travels.begin(), travels.end(), [](double one) { return one != 0.0; });
+  };
+  bool any = moves(rows.left) || moves(rows.right);
+  for (const Covariate& one : rows.columns) {
+    any = any || (!is_steering_column(map.model.robot, one.name) && moves(one.values));
+  }
+  if (any) return;
+  if (!map.odometry.pose.empty() && log.twists_move) {
+    throw InputError(map.file.string(), map.odometry.line,
+                     fmt::format("[odometry]: the poses of {} never move where its velocities do, "
+                                 "expected twist = \"{}\" in place of pose",
+                                 map.odometry.pose, map.odometry.pose));
+  }
+  rows.warnings.emplace_back(
+      "the wheels never move: every travel is 0; another field has the motion, or the robot stood");
 }
 
 /// Beginnings and ends of rows, within what all wheels have.
@@ -243,6 +265,7 @@ WheelRows wheel_rows(const LogMap& map, GatheredLog& log) {
       rows.columns.push_back({wheels[w].name, std::move(travels)});
     }
   }
+  check_that_it_moves(map, log, rows);
   return rows;
 }
 

@@ -95,7 +95,7 @@ std::optional<WheelConstants> wheel_constants(const std::filesystem::path& log,
   map.odometry.twist = topics.odometry;
   GatheredLog gathered;
   try {
-    gathered = gather(log, map);
+    gathered = gather(JoinedLogs({log}), map);
   } catch (const InputError&) {  // what it lacks a conversion will say
     return std::nullopt;
   }
