@@ -4,6 +4,7 @@
 // trussmap adjust: the best fit of a plain pose graph.
 #include "commands.hpp"
 #include "distributed_adjust.hpp"
+#include "graph_options.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
@@ -34,6 +35,7 @@ struct AdjustOptions {
   double gate = RobustOptions{}.gate;
   std::string solver = "frontal";
   double tolerance = DistributedAdjustOptions{}.tolerance;
+  std::string edge2 = kEdge2ByName;
 };
 
 /// Everything that the JSON file says.
@@ -108,9 +110,11 @@ void run_adjust(const AdjustOptions& options) {
         {options.graph, options.out, options.json, options.solver, options.tolerance});
     return;
   }
-  Progress progress({{"reading", 20}, {"adjusting", 80}});
+  Progress progress({{"reading", 20}, {"checking", 20}, {"adjusting", 60}});
   progress.next();
-  PoseGraph graph = read_g2o(options.graph);
+  PoseGraph graph = read_g2o(options.graph, edge2_named(options.edge2));
+  progress.next();
+  warn_of_graph_mistakes(graph, options.graph);
   progress.next();
   const Run run = adjust_graph(options, graph);
   Files files;
@@ -133,6 +137,10 @@ void check_solver(const Command& command, const AdjustOptions& options) {
   if (options.solver == "frontal") {
     if (command.count("--tolerance") == 0) return;
     throw UsageError("--tolerance is given without --solver petsc or mumps, to which it belongs");
+  }
+  if (command.count("--edge2") > 0) {
+    throw UsageError(fmt::format("--edge2 is given with --solver {}, which reads no EDGE2 lines",
+                                 options.solver));
   }
   for (const char* name : {"--start", "--robust"}) {
     if (command.count(name) == 0) continue;
@@ -183,10 +191,11 @@ void setup_adjust(const Command& app) {
                   "With --solver petsc or mumps: |f - K u| to be reached, against |f|")
       .check(between(1e-15, 0.1))
       .capture_default_str();
+  add_edge2(command, options->edge2);
   command.footer(
       "Formats: g2o (VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_XY, EDGE_POINTXY, FIX) and TORO\n"
       "(VERTEX2, EDGE2), iSAM (ODOMETRY or EDGE2, LANDMARK), plain or .xz. Without FIX the first "
-      "vertex stays where it is.");
+      "vertex stays where it is. What trussmap check finds is said as warnings first.");
   command.callback([options, command] {
     if (command.count("--gate") > 0 && !options->robust) {
       throw UsageError("--gate is given without --robust, to which it belongs");

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// trussmap check: are recordings what they should be?
+// trussmap check: are recordings, or pose graphs, what they should be?
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "graph_options.hpp"
 #include "model_recordings.hpp"
 #include "terminal.hpp"
 #include "trussmap/check.hpp"
@@ -11,7 +12,10 @@
 #include "trussmap/texts.hpp"
 #include "trussmap/write_files.hpp"
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -22,9 +26,10 @@ namespace {
 using nlohmann::ordered_json;
 
 struct CheckCommand {
-  std::vector<std::string> recordings;
+  std::vector<std::string> inputs;
   std::string model;
   std::string json;
+  std::string edge2 = kEdge2ByName;
 };
 
 std::string json_text(const std::vector<CheckFinding>& findings) {
@@ -39,12 +44,43 @@ std::string json_text(const std::vector<CheckFinding>& findings) {
   return ordered_json{{"findings", list}}.dump(2) + "\n";
 }
 
-void run_check(const CheckCommand& options) {
-  const std::vector<Recording> recordings = read_recordings(options.recordings);
+std::vector<CheckFinding> findings_of_recordings(const CheckCommand& options) {
+  const std::vector<Recording> recordings = read_recordings(options.inputs);
   std::optional<Model> model;
   if (!options.model.empty()) model = read_model(options.model, recordings);
+  return check_recordings(recordings, model ? &*model : nullptr, options.model);
+}
+
+std::vector<CheckFinding> findings_of_graphs(const CheckCommand& options) {
+  if (!options.model.empty()) {
+    throw UsageError("--model is given with pose graphs, expected with recordings: folders");
+  }
+  std::vector<CheckFinding> all;
+  for (const std::string& file : options.inputs) {
+    const std::vector<CheckFinding> found = check_graph_file(file, edge2_named(options.edge2));
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  return all;
+}
+
+/// Whether the inputs are files, pose graphs therefore; recordings are folders.
+bool are_graphs(const std::vector<std::string>& inputs) {
+  const auto files = std::count_if(inputs.begin(), inputs.end(), [](const std::string& one) {
+    return std::filesystem::is_regular_file(one);
+  });
+  if (files != 0 && files != std::ssize(inputs)) {
+    throw UsageError("pose graphs and recordings are given, expected one or the other");
+  }
+  return files != 0;
+}
+
+void run_check(const CheckCommand& options, bool edge2_given) {
+  const bool graphs = are_graphs(options.inputs);
+  if (edge2_given && !graphs) {
+    throw UsageError("--edge2 is given with recordings, expected with pose graphs: files");
+  }
   const std::vector<CheckFinding> findings =
-      check_recordings(recordings, model ? &*model : nullptr, options.model);
+      graphs ? findings_of_graphs(options) : findings_of_recordings(options);
   if (!options.json.empty()) write_files({{options.json, json_text(findings)}});
   fmt::print("{}", check_text(findings, style_of(stdout)));
   if (!findings.empty()) throw AnswerIsNo();
@@ -54,11 +90,18 @@ void run_check(const CheckCommand& options) {
 
 void setup_check(const Command& app) {
   auto options = std::make_shared<CheckCommand>();
-  const Command command = app.add_subcommand(
-      "check", "Look for mistakes in recordings: units, signs, axes, names, clocks");
-  command.add_option("RECORDING", options->recordings, "Folders of CSV files, one per session")
+  const Command command =
+      app.add_subcommand("check",
+                         "Look for mistakes in recordings (units, signs, axes, names, clocks) or "
+                         "in pose graphs (loops "
+                         "the wrong way round, information, degrees, vertices that nothing ties)");
+  command
+      .add_option(
+          "RECORDING", options->inputs,
+          "Folders of CSV files, one per session; or files of pose graphs (g2o, TORO, iSAM), "
+          "each by itself")
       .required()
-      .type_name("DIR");
+      .type_name("DIR|FILE");
   command
       .add_option(
           "--model", options->model,
@@ -66,11 +109,12 @@ void setup_check(const Command& app) {
           "and without a compass, less is found")
       .type_name("FILE");
   command.add_option("--json", options->json, "Write the findings as JSON").type_name("FILE");
+  add_edge2(command, options->edge2);
   command.footer(
       "A line per finding: file, columns, what it is and what shows it, and below it the remedy.\n"
       "Exit status 0 where nothing is found, 1 where something is. The other commands print the\n"
       "same findings as warnings before they begin.");
-  command.callback([options] { run_check(*options); });
+  command.callback([options, command] { run_check(*options, command.count("--edge2") > 0); });
 }
 
 }  // namespace trussmap::app

@@ -3,7 +3,6 @@
 #include "recording_warnings.hpp"
 
 #include "terminal.hpp"
-#include "trussmap/check.hpp"
 
 #include <cstdio>
 
@@ -11,15 +10,18 @@
 
 namespace trussmap::app {
 
-void warn_of_mistakes(const std::vector<Recording>& recordings, const Model& model,
-                      const std::string& model_file) {
-  const std::vector<CheckFinding> findings = check_recordings(recordings, &model, model_file);
+void print_warnings(const std::vector<CheckFinding>& findings) {
   if (findings.empty()) return;
   // What progress has written goes first.
   if (can_rewrite_lines(stderr)) fmt::print(stderr, "\r\033[K");
   for (const CheckFinding& one : findings) {
     fmt::print(stderr, "{}", trussmap::warning_text(in_words(one), style_of(stderr)));
   }
+}
+
+void warn_of_mistakes(const std::vector<Recording>& recordings, const Model& model,
+                      const std::string& model_file) {
+  print_warnings(check_recordings(recordings, &model, model_file));
 }
 
 }  // namespace trussmap::app

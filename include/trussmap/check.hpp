@@ -16,9 +16,14 @@
 //
 // A quantity is reported where it contradicts another by far more than any robot's errors, and one
 // mistake explains all that is contradicted. Where several would, the finding names them all.
+//
+// Of pose graphs: what a quick fit says of the graph as it stands is compared with what it would
+// say without a mistake. Near linear in edges.
 #pragma once
 
+#include "trussmap/map_files.hpp"
 #include "trussmap/model.hpp"
+#include "trussmap/pose_graph.hpp"
 #include "trussmap/recording.hpp"
 
 #include <string>
@@ -27,9 +32,9 @@
 namespace trussmap {
 
 struct CheckFinding {
-  std::string file;      ///< of a recording's folder, or the model's
+  std::string file;      ///< of a recording's folder, the model's, or a pose graph's
   std::string column;    ///< one, or several with commas; empty: the file as a whole
-  std::string kind;      ///< one of check_kinds()
+  std::string kind;      ///< one of check_kinds(), or of check_graph_kinds()
   std::string evidence;  ///< what it looks like, with figures
   std::string remedy;
 };
@@ -45,6 +50,20 @@ struct CheckFinding {
 [[nodiscard]] std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordings,
                                                          const Model* model = nullptr,
                                                          const std::string& model_file = "");
+
+/// What check_graph and check_graph_file can find.
+[[nodiscard]] const std::vector<std::string>& check_graph_kinds();
+
+/// Loops the wrong way round, covariance for information, degrees, identity information, duplicate
+/// edges, vertices that nothing ties or holds. `file` is named in findings. Throws
+/// std::invalid_argument on a graph without edges or with a fault (find_fault).
+[[nodiscard]] std::vector<CheckFinding> check_graph(const PoseGraph& graph,
+                                                    const std::string& file);
+
+/// The same of a file, of which information in TORO's order for g2o's, or the reverse, is found,
+/// too, which read_g2o refuses. Throws InputError as that does for all else.
+[[nodiscard]] std::vector<CheckFinding> check_graph_file(const std::string& path,
+                                                         Edge2 edge2 = Edge2::by_name);
 
 /// "DIR/drive.csv, left,right: ...; remedy: ...": one line.
 [[nodiscard]] std::string in_words(const CheckFinding& finding);

@@ -31,10 +31,15 @@
 //   EDGE2        i j  dx dy dtheta  I11 I12 I22 I33 I13 I23  TORO: pose to pose, j seen from i
 //
 //   ODOMETRY     i j  dx dy dtheta  R11 R12 R13 R22 R23 R33  iSAM: pose to pose, information R'R
-//   EDGE2        i j  dx dy dtheta  R11 R12 R13 R22 R23 R33  the same, in a file with LANDMARKs
+//   EDGE2        i j  dx dy dtheta  R11 R12 R13 R22 R23 R33  iSAM: the same
 //   LANDMARK     i l  dx dy  R11 R12 R22                     iSAM: pose to point, robot's frame;
 //                                                            l counts landmarks apart from poses,
-//                                                            and becomes vertex (last pose) + 1 + l
+//                                                            and becomes vertex (last) + 1 + l
+//                                                            unless VERTEX_XY l stands there
+//
+// How a line's information is read is said by its tag alone, whatever stands beside it. EDGE2,
+// which two programs write, is iSAM's in files named .txt without VERTEX2 lines, else TORO's, or
+// what Edge2 says; where the file has lines of the other program, it has to be said.
 //
 // A file may have no vertex lines at all: its vertices are then those that its edges name, without
 // estimates. If there are vertex lines, every vertex needs one. Names that end in .xz are
@@ -122,13 +127,18 @@ struct YamlMap {
 
 // Pose graphs.
 
+/// Whose EDGE2 lines a file has.
+enum class Edge2 { by_name, toro, isam };
+
 /// Throws InputError with file and line: a tag that is not in the table, too few or too many
 /// values, a value that is no finite number, a vertex defined twice or not at all, an edge between
-/// the wrong kinds of vertices, information that is not positive semidefinite.
-[[nodiscard]] PoseGraph read_g2o(const std::string& path);
+/// the wrong kinds of vertices, information that is not positive semidefinite, EDGE2 lines that may
+/// be either program's.
+[[nodiscard]] PoseGraph read_g2o(const std::string& path, Edge2 edge2 = Edge2::by_name);
 
-/// The same from text; `name` stands for the file in messages.
-[[nodiscard]] PoseGraph parse_g2o(std::string_view text, const std::string& name);
+/// The same from text; `name` stands for the file in messages, and says what EDGE2 is.
+[[nodiscard]] PoseGraph parse_g2o(std::string_view text, const std::string& name,
+                                  Edge2 edge2 = Edge2::by_name);
 
 /// Vertices that have an estimate, fixed ones, and all edges; numbers read back without loss.
 [[nodiscard]] std::string format_g2o(const PoseGraph& graph);

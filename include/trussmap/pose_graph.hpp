@@ -79,11 +79,18 @@ struct DisplacementEdge {
   Matrix2 information = Matrix2::Zero();  ///< map frame, 1/m^2
 };
 
+/// How a file gave the information of its edges; it is read already.
+struct GraphSource {
+  std::size_t roots = 0;     ///< edges whose information was given as its square root (iSAM)
+  bool other_order = false;  ///< entries stood in TORO's order for g2o's, or the reverse
+};
+
 struct PoseGraph {
   std::vector<GraphVertex> vertices;
   std::vector<PoseEdge> pose_edges;
   std::vector<PointEdge> point_edges;
   std::vector<DisplacementEdge> displacement_edges;
+  GraphSource source = {};
 
   [[nodiscard]] std::size_t edges() const {
     return pose_edges.size() + point_edges.size() + displacement_edges.size();

@@ -7,6 +7,7 @@
 
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
+#include "trussmap/robot.hpp"
 
 #include <string>
 #include <utility>

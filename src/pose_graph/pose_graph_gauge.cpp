@@ -9,7 +9,6 @@
 #include "trussmap/error.hpp"
 
 #include <algorithm>
-#include <optional>
 
 namespace trussmap {
 namespace {
@@ -17,15 +16,9 @@ namespace {
 constexpr std::size_t kNamed = 3;       // vertices named per part, and
 constexpr std::size_t kPartsNamed = 4;  // parts, before "and so on"
 
-struct Part {
-  std::vector<int> vertices;
-  int fixed_poses = 0;
-  int fixed_points = 0;
-  bool has_displacements = false;
-  std::optional<int> first_pose;
-};
+}  // namespace
 
-std::vector<Part> find_parts(const PoseGraph& graph) {
+std::vector<GraphPart> graph_parts(const PoseGraph& graph) {
   DisjointSets sets(static_cast<int>(graph.vertices.size()));
   const auto join = [&sets](const auto& edge, int a, int b) {
     if (!edge.information.isZero(0.0)) sets.join(a, b);
@@ -34,7 +27,7 @@ std::vector<Part> find_parts(const PoseGraph& graph) {
   for (const PointEdge& edge : graph.point_edges) join(edge, edge.pose, edge.point);
   for (const DisplacementEdge& edge : graph.displacement_edges) join(edge, edge.from, edge.to);
 
-  std::vector<Part> parts;
+  std::vector<GraphPart> parts;
   std::vector<int> number(graph.vertices.size(), -1);
   for (std::size_t v = 0; v < graph.vertices.size(); ++v) {
     const int vertex = static_cast<int>(v);
@@ -43,7 +36,7 @@ std::vector<Part> find_parts(const PoseGraph& graph) {
       part = static_cast<int>(parts.size());
       parts.emplace_back();
     }
-    Part& mine = parts[idx(part)];
+    GraphPart& mine = parts[idx(part)];
     mine.vertices.push_back(vertex);
     const bool pose = is_pose(graph.vertices[v]);
     if (pose && !mine.first_pose) mine.first_pose = vertex;
@@ -55,7 +48,9 @@ std::vector<Part> find_parts(const PoseGraph& graph) {
   return parts;
 }
 
-std::string name_vertices(const PoseGraph& graph, const Part& part) {
+namespace {
+
+std::string name_vertices(const PoseGraph& graph, const GraphPart& part) {
   std::string names = part.vertices.size() == 1 ? "vertex " : "vertices ";
   for (std::size_t k = 0; k < std::min(kNamed, part.vertices.size()); ++k) {
     if (k > 0) names += ", ";
@@ -67,7 +62,7 @@ std::string name_vertices(const PoseGraph& graph, const Part& part) {
   return names;
 }
 
-[[noreturn]] void refuse(const PoseGraph& graph, const std::vector<Part>& parts) {
+[[noreturn]] void refuse(const PoseGraph& graph, const std::vector<GraphPart>& parts) {
   const std::int64_t first = graph.vertices[idx(parts.front().vertices.front())].id;
   std::string message =
       joined("the graph falls into ", parts.size(), " parts that no measurement ties together: ");
@@ -81,7 +76,7 @@ std::string name_vertices(const PoseGraph& graph, const Part& part) {
   throw SolveError(message + " (tie them by an edge, or fix a vertex of each part)");
 }
 
-void hold(const PoseGraph& graph, const Part& part, std::vector<std::uint8_t>& held) {
+void hold(const PoseGraph& graph, const GraphPart& part, std::vector<std::uint8_t>& held) {
   const bool has_poses = part.first_pose.has_value();
   const bool turns = has_poses && !part.has_displacements;
   if (part.fixed_poses > 0 || part.fixed_points > 1) return;
@@ -105,17 +100,16 @@ int rank(const Matrix& information) {
 }  // namespace
 
 std::vector<std::uint8_t> choose_gauge(const PoseGraph& graph) {
-  const std::vector<Part> parts = find_parts(graph);
-  const bool loose = std::any_of(parts.begin(), parts.end(), [](const Part& part) {
-    return part.fixed_poses + part.fixed_points == 0;
-  });
+  const std::vector<GraphPart> parts = graph_parts(graph);
+  const bool loose = std::any_of(parts.begin(), parts.end(),
+                                 [](const GraphPart& part) { return !part.is_fixed(); });
   if (parts.size() > 1 && loose) refuse(graph, parts);
 
   std::vector<std::uint8_t> held(graph.vertices.size(), held_nothing);
   for (std::size_t v = 0; v < held.size(); ++v) {
     if (graph.vertices[v].fixed) held[v] = held_all;
   }
-  for (const Part& part : parts) hold(graph, part, held);
+  for (const GraphPart& part : parts) hold(graph, part, held);
   return held;
 }
 

@@ -19,9 +19,23 @@
 #include "trussmap/pose_graph.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace trussmap {
+
+/// Vertices that measurements tie together.
+struct GraphPart {
+  std::vector<int> vertices;  ///< ascending
+  int fixed_poses = 0;
+  int fixed_points = 0;
+  bool has_displacements = false;
+  std::optional<int> first_pose;
+
+  [[nodiscard]] bool is_fixed() const { return fixed_poses + fixed_points > 0; }
+};
+/// In the order of their first vertices. An edge without information ties nothing.
+[[nodiscard]] std::vector<GraphPart> graph_parts(const PoseGraph& graph);
 
 /// Per vertex, bits of Held. Throws SolveError, naming vertices of each, if the graph falls into
 /// parts of which one has no fixed vertex.

@@ -72,6 +72,38 @@ TEST(G2o, ReadsTorosOrderOfTheInformation) {
   EXPECT_EQ(toro.vertices.size(), 2U);
 }
 
+TEST(G2o, ReadsAnEdgeTheSameWhateverStandsBesideIt) {
+  const std::string edge = "EDGE_SE2 0 1 1 2 3 50 12 13 60 23 70\n";
+  const PoseGraph alone = parse_g2o(edge, "x.g2o");
+  for (const char* name : {"x.g2o", "x.graph", "x.txt"}) {
+    const PoseGraph beside = parse_g2o(edge + "LANDMARK 0 9 1 1 10 0 10\n", name);
+    EXPECT_EQ(beside.pose_edges[0].information, alone.pose_edges[0].information);
+    EXPECT_EQ(beside.point_edges[0].information, Matrix2(100.0 * Matrix2::Identity()));
+    EXPECT_EQ(beside.source.roots, 1U);
+  }
+  // With vertices, too: the landmark's own line, or a number of its own.
+  const std::string poses = "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\n";
+  const std::string landmark = "LANDMARK 0 1 1 1 10 0 10\n";
+  EXPECT_EQ(parse_g2o(poses + edge + landmark, "x.g2o").vertices[2].id, 3);
+  const std::string stated = "LANDMARK 0 5 1 1 10 0 10\n";
+  EXPECT_EQ(parse_g2o(poses + "VERTEX_XY 5 1 1\n" + edge + stated, "x.g2o").vertices.size(), 3U);
+}
+
+TEST(G2o, TakesEdge2ByNameOrAsSaid) {
+  const std::string edge = "EDGE2 0 1 1 2 3 5 0 6 7 0 0\n";
+  const Matrix3 toro = Eigen::Vector3d(5, 6, 7).asDiagonal();
+  EXPECT_EQ(parse_g2o(edge, "x.graph").pose_edges[0].information, toro);
+  EXPECT_EQ(parse_g2o(edge, "x.txt", Edge2::toro).pose_edges[0].information, toro);
+  const std::string vertices = "VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0\n";
+  EXPECT_EQ(parse_g2o(vertices + edge, "x.txt").pose_edges[0].information, toro);
+  const std::string root = "EDGE2 0 1 1 2 3 5 0 0 6 0 7\n";
+  const Matrix3 squared = Eigen::Vector3d(25, 36, 49).asDiagonal();
+  EXPECT_EQ(parse_g2o(root, "x.txt").pose_edges[0].information, squared);
+  EXPECT_EQ(parse_g2o(root, "x.graph", Edge2::isam).pose_edges[0].information, squared);
+  const std::string both = edge + "LANDMARK 0 9 1 1 10 0 10\n";
+  EXPECT_EQ(parse_g2o(both, "x.graph", Edge2::toro).pose_edges[0].information, toro);
+}
+
 TEST(G2o, TakesTheVerticesFromTheEdgesWhereThereAreNone) {
   const PoseGraph graph = parse_g2o(
       "EDGE_SE2 4 9 1 0 0 1 0 0 1 0 1\nEDGE_SE2_XY 9 2 1 0 1 0 1\nEDGE_POINTXY 2 5 1 0 1 0 1\n",
@@ -162,6 +194,12 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"indefinite", kTwoPoses + "EDGE_SE2 0 1 1 0 0 1 2 0 1 0 1\n",
             "bad.g2o:3: the information matrix is not positive semidefinite, expected the inverse "
             "of a covariance"},
+        Bad{"toros_order", kTwoPoses + "EDGE_SE2 0 1 1 0 0 5 0 5 7 0 0\n",
+            "bad.g2o:3: the information matrix is not positive semidefinite, expected the inverse "
+            "of a covariance; in the order I11 I12 I22 I33 I13 I23 of TORO it would be one"},
+        Bad{"two_programs", "EDGE2 0 1 1 2 3 5 0 6 7 0 0\nLANDMARK 0 9 1 1 10 0 10\n",
+            "bad.g2o:1: EDGE2 is TORO's here, but line 2 is iSAM's, whose EDGE2 has the root of "
+            "the information; expected --edge2 isam or --edge2 toro"},
         Bad{"fixed", "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nFIX 0\n",
             "bad.g2o:2: vertex 0 is fixed but has no VERTEX line, expected one that says where"},
         Bad{"fix_nothing", kTwoPoses + "FIX\n",
