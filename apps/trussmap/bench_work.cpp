@@ -40,7 +40,7 @@ bool same_spans(const std::vector<std::vector<TimeSpan>>& a,
 std::optional<WorkbenchLog> log_in(const BenchJob& job) {
   const std::filesystem::path file = job.folder / kLog;
   if (!std::filesystem::exists(file)) return std::nullopt;
-  WorkbenchLog log = read_workbench_log(file, job.recordings);
+  WorkbenchLog log = read_workbench_log(file, job.rows.recordings);
   if (format_model(log.steps.front().model) != format_model(job.model)) {
     throw InputError(file.string(), 0,
                      "the work began with another model, expected the same (or another --work)");
@@ -141,7 +141,7 @@ void BenchWork::show(const TriedModel& now, const WorkbenchLog& log, bool provis
 void BenchWork::publish(const Workbench& bench) {
   const WorkbenchLog& log = bench.log();
   write_files({}, {{job_.folder,
-                    {{kLog, format_workbench_log(log, job_.recordings)},
+                    {{kLog, format_workbench_log(log, job_.rows.recordings)},
                      {kModel, format_model(bench.now().fit().model)}},
                     {}}});
   show(bench.now(), log, false);
@@ -177,8 +177,8 @@ void BenchWork::run() {
   static_cast<void>(::setpriority(PRIO_PROCESS, 0, 10));
 #endif
   const auto first = [this](Workbench&, const WorkbenchWatch& watch) {
-    bench_ = log_ ? std::make_unique<Workbench>(job_.recordings, *log_, job_.options, watch)
-                  : std::make_unique<Workbench>(job_.recordings, job_.model, job_.options, watch);
+    bench_ = log_ ? std::make_unique<Workbench>(job_.rows, *log_, job_.options, watch)
+                  : std::make_unique<Workbench>(job_.rows, job_.model, job_.options, watch);
   };
   work({"", first});
   while (true) {

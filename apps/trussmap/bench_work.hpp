@@ -27,8 +27,8 @@
 namespace trussmap::app {
 
 struct BenchJob {
-  std::vector<DrivenRecording> recordings;
-  Model model;  ///< as given
+  PreparedRecordings rows;  ///< of the model
+  Model model;              ///< as given
   DiagnoseOptions options;
   std::string subject;           ///< recordings and model, for people
   std::filesystem::path folder;  ///< where steps are kept

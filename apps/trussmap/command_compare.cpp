@@ -134,12 +134,13 @@ void run_compare(const CompareCommand& options) {
   progress.next();
   const ModelFit fit = fit_model(input.recordings, input.model, how.fit);
   progress.next();
-  const Comparison result = compare(input.recordings, fit, how);
+  const Comparison result = compare(input, fit, how);
   const std::vector<NoiseBudget> budget = noise_budget(input.recordings, input.model);
   Files files;
   if (!options.input.json.empty()) {
     ordered_json report = json_of(result);
     report["noise_budget"] = budget_json(budget);
+    report["sightings_used"] = sightings_json(result.sightings);
     report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");
   }

@@ -103,12 +103,12 @@ void run_diagnose(const DiagnoseCommand& options) {
   if (options.page.wanted()) steps.push_back({"comparing with what is missing", 50});
   Progress progress(steps);
   progress.next();
-  const ModelRecordings input = read_model_recordings(options.input);
+  ModelRecordings input = read_model_recordings(options.input);
   const DiagnoseOptions how = diagnose_options(options.input);
   progress.next();
-  const ModelFit fit = fit_model(input.recordings, input.model, how.fit);
+  ModelFit fit = fit_model(input.recordings, input.model, how.fit);
   progress.next();
-  const Diagnosis result = diagnose(input.recordings, fit, how);
+  const Diagnosis result = diagnose(input, fit, how);
   const std::vector<NoiseBudget> budget =
       noise_budget(input.recordings, result.under ? result.under->fit.model : fit.model);
   const RobotConstants constants =
@@ -118,6 +118,7 @@ void run_diagnose(const DiagnoseCommand& options) {
     ordered_json report = json_of(result);
     add_constants(constants, report);
     report["noise_budget"] = budget_json(budget);
+    report["sightings_used"] = sightings_json(result.sightings);
     report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");
   }

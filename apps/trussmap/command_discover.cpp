@@ -40,6 +40,7 @@ ordered_json json_of(const DiscoveryStep& step) {
   ordered_json one = {{"added", nullptr},
                       {"chi2", step.chi2},
                       {"dof", step.dof},
+                      {"left_out", step.left_out},
                       {"heldout", held_out_json(step.held_out)},
                       {"reckoned_10_s_m", optional_json(step.reckoned_10)},
                       {"reckoned_30_s_m", optional_json(step.reckoned_30)}};
@@ -104,12 +105,12 @@ class Told {
 
 void run_discover(const DiscoverCommand& options) {
   Told told(options.page.wanted());
-  const ModelRecordings input = read_model_recordings(options.input);
+  ModelRecordings input = read_model_recordings(options.input);
   DiscoverOptions how;
   how.diagnosis = diagnose_options(options.input);
   how.most_effects = options.most;
   how.progress = [&told](const DiscoveryStage& stage) { told.part(stage); };
-  const Discovery result = discover(input.recordings, input.model, how);
+  const Discovery result = discover(input, input.model, how);
   told.page();
   const std::vector<NoiseBudget> budget = noise_budget(input.recordings, result.found.model);
   const RobotConstants constants = with_velocity_variances(robot_constants(result, input.model),
@@ -120,6 +121,7 @@ void run_discover(const DiscoverCommand& options) {
     ordered_json report = json_of(result);
     add_constants(constants, report);
     report["noise_budget"] = budget_json(budget);
+    report["sightings_used"] = sightings_json(result.sightings);
     report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");
   }

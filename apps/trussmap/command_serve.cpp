@@ -56,7 +56,8 @@ void run_serve(const ServeCommand& options) {
   LocalServer server(static_cast<std::uint16_t>(options.port));
   const std::string folder =
       options.work.empty() ? usual_folder(options.input.recordings.front()) : options.work;
-  BenchWork work({std::move(input.recordings), std::move(input.model),
+  const std::vector<std::string> notes = input.notes;
+  BenchWork work({std::move(static_cast<PreparedRecordings&>(input)), std::move(input.model),
                   diagnose_options(options.input),
                   subject_of(options.input.recordings, options.input.model), folder});
   const BenchOrigin origin{options.input.recordings, options.input.model};
@@ -64,7 +65,7 @@ void run_serve(const ServeCommand& options) {
       "{}\nOpen this address in a browser on this machine. Steps are kept in {}; Ctrl-C "
       "ends it.\n",
       server.address(), folder);
-  for (const std::string& note : input.notes) fmt::print("{}\n", note);
+  for (const std::string& note : notes) fmt::print("{}\n", note);
   std::fflush(stdout);
   if (!options.no_browser) open_in_browser(server.address());
   server.run([&](const LocalRequest& request) { return bench_reply(request, work, origin); },

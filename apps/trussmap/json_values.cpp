@@ -36,6 +36,10 @@ ordered_json look_alikes_json(const std::vector<LookAlike>& look_alikes) {
   return list;
 }
 
+ordered_json sightings_json(const UsedSightings& sightings) {
+  return {{"used", sightings.used}, {"all", sightings.all}, {"every_s", sightings.every}};
+}
+
 ordered_json metrics_json(const HeldOutMetrics& metrics) {
   return {{"arrival_rms_m", metrics.arrival_rms},
           {"stretch_error", metrics.stretch_error},

@@ -22,6 +22,8 @@ namespace trussmap::app {
 /// Name, channel and shape.
 [[nodiscard]] nlohmann::ordered_json effect_json(const Effect& effect);
 [[nodiscard]] nlohmann::ordered_json look_alikes_json(const std::vector<LookAlike>& look_alikes);
+/// How many sightings were used, of how many.
+[[nodiscard]] nlohmann::ordered_json sightings_json(const UsedSightings& sightings);
 /// Arrival, stretch and orientation error; of held-out legs with their number.
 [[nodiscard]] nlohmann::ordered_json metrics_json(const HeldOutMetrics& metrics);
 [[nodiscard]] nlohmann::ordered_json held_out_json(const HeldOut& held_out);

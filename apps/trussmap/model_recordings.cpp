@@ -6,7 +6,6 @@
 #include "recording_warnings.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
-#include "trussmap/prepared_recordings.hpp"
 #include "trussmap/recording_files.hpp"
 
 #include <algorithm>
@@ -120,7 +119,7 @@ ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
   warn_of_mistakes(read, model, options.model);
   PreparedRecordings prepared =
       prepare_recordings(std::move(recordings), model, fit_options(options), options.every);
-  return {std::move(model), std::move(prepared.recordings), std::move(prepared.notes)};
+  return {std::move(prepared), std::move(model)};
 }
 
 FitOptions fit_options(const ModelRecordingsOptions& options) {

@@ -8,6 +8,7 @@
 #include "trussmap/compare.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/gate.hpp"
+#include "trussmap/prepared_recordings.hpp"
 
 #include <optional>
 #include <string>
@@ -39,10 +40,9 @@ void add_fitted_recordings(const Command& command, ModelRecordingsOptions& optio
 /// --stated-noise.
 void add_stated_noise(const Command& command, ModelRecordingsOptions& options);
 
-struct ModelRecordings {
+/// Recordings as the model given has them.
+struct ModelRecordings : PreparedRecordings {
   Model model;
-  std::vector<DrivenRecording> recordings;
-  std::vector<std::string> notes;  ///< what of the recordings is not used, and why
 };
 
 /// One recording per folder, in their order. Throws InputError.

@@ -23,6 +23,7 @@
 
 #include "trussmap/fit_model.hpp"
 #include "trussmap/held_out.hpp"
+#include "trussmap/prepared_recordings.hpp"
 
 #include <cstddef>
 #include <string>
@@ -133,8 +134,9 @@ struct Comparison {
   std::string missing;  ///< the effect that speaks against it
   double chi2 = 0.0;
   int dof = 0;
-  int coefficients = 0;  ///< estimated in this fit, each at the cost of a degree of freedom
-  double p_value = 1.0;  ///< of chi^2 as a whole
+  int coefficients = 0;     ///< estimated in this fit, each at the cost of a degree of freedom
+  double p_value = 1.0;     ///< of chi^2 as a whole
+  UsedSightings sightings;  ///< of prepared recordings
   std::size_t legs = 0;
   std::size_t landmarks = 0;
   HeldOut held_out;
@@ -171,6 +173,10 @@ struct Comparison {
                                         const ModelFit& fit, const CompareOptions& options = {}) {
   return compare(with_wheels(recordings, fit.model.robot), fit, options);
 }
+
+/// The same of recordings as that fit's model has them.
+[[nodiscard]] Comparison compare(const PreparedRecordings& recordings, const ModelFit& fit,
+                                 const CompareOptions& options = {});
 
 /// A model's effects fitted, beside the same robot without them.
 struct EffectGain {

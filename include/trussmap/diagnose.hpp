@@ -15,7 +15,8 @@
 //   order        evidence: log Bayes factor, sizes equally likely on a logarithmic scale, and a
 //                little more belief in the catalogue than in a free form
 //   look-alike   |P_r v| / |v| >= 0.95: of the winner's own trace v, what a rival's columns can
-//                show as well
+//                show as well; whether all measurements tell it apart is decided by fits with
+//                either, since what is alike to first order may differ beyond
 //   absent       where even the minimal detectable size would raise the arrival error by less than
 //                5 %
 //   misfit       where no effect is missing: by the rule of compare.hpp
@@ -47,8 +48,9 @@ inline constexpr double kToldApart = 12.0;
 struct LookAlike {
   Effect effect;
   double cosine = 0.0;
-  /// chi^2 by which it explains less than what it looks like, in units of the errors that that
-  /// leaves: a trace may be much alike, and the measurements many.
+  /// chi^2 by which the fit with it explains less than that with what it looks like, in units of
+  /// the errors that that leaves: a trace may be much alike, and the measurements many. Below 0:
+  /// more.
   double behind = 0.0;
 
   [[nodiscard]] bool told_apart() const { return behind >= kToldApart; }
@@ -161,6 +163,7 @@ struct Diagnosis {
   double chi2 = 0.0;
   int dof = 0;
   int coefficients = 0;           ///< estimated in this fit
+  UsedSightings sightings;        ///< of prepared recordings
   HeldOut held_out;               ///< of the present model
   HeldOutMetrics with_missing;    ///< predicted, with all that is missing added
   std::vector<Finding> findings;  ///< best first
@@ -196,6 +199,12 @@ struct DiagnoseOptions {
 /// The same where the fit of these recordings is there already.
 [[nodiscard]] Diagnosis diagnose(const std::vector<DrivenRecording>& recordings,
                                  const ModelFit& fit, const DiagnoseOptions& options = {});
+
+/// The same of recordings as the fit's model has them. Where with what is missing many more of
+/// their sightings may be used, the diagnosis is made again by these, and `recordings` and `fit`
+/// are those on return.
+[[nodiscard]] Diagnosis diagnose(PreparedRecordings& recordings, ModelFit& fit,
+                                 const DiagnoseOptions& options = {});
 
 /// What is missing as constants to paste, with all of it added at once, beside the model's effects
 /// as they were fitted: sizes by the score tests, their errors taken for independent. None where

@@ -28,6 +28,7 @@ struct DiscoveryStep {
   std::vector<std::string> dropped;
   double chi2 = 0.0;
   int dof = 0;
+  std::size_t left_out = 0;  ///< sightings, fixes and loops that contradict all others
   HeldOut held_out;
   /// Dead reckoning, over 10 s and 30 s from one smoothed pose to the next; rms, m. Absent where
   /// the recordings have no 20 such stretches.
@@ -42,7 +43,8 @@ enum class StopReason {
   nothing_significant,
   limit_reached,     ///< of the number of effects
   cannot_be_fitted,  ///< `effect` beside what the model has
-  predicts_worse     ///< `effect` fits these legs, but predicts others worse
+  predicts_worse,    ///< `effect` fits these legs, but predicts others worse
+  told_to            ///< DiscoverOptions::go_on
 };
 
 struct Stopped {
@@ -56,9 +58,10 @@ struct Discovery {
   ModelFit given;
   ModelFit found;
   Stopped stopped;
-  bool consistent = true;  ///< the model found, by the rule of compare.hpp
-  Diagnosis first;         ///< of the model given
-  Diagnosis last;          ///< of the model found
+  bool consistent = true;   ///< the model found, by the rule of compare.hpp
+  UsedSightings sightings;  ///< of prepared recordings
+  Diagnosis first;          ///< of the model given
+  Diagnosis last;           ///< of the model found
 };
 
 /// A part of the work that begins.
@@ -72,6 +75,8 @@ struct DiscoverOptions {
   DiagnoseOptions diagnosis;
   std::size_t most_effects = 6;
   std::function<void(const DiscoveryStage&)> progress = {};
+  /// Asked of each model on the way, before it is diagnosed, whether to go on from it.
+  std::function<bool(const ModelFit&)> go_on = {};
 };
 
 /// What was found as constants to paste. `before`: the model given.
@@ -84,5 +89,12 @@ struct DiscoverOptions {
                                         const Model& model, const DiscoverOptions& options = {}) {
   return discover(with_wheels(recordings, model.robot), model, options);
 }
+
+/// The same of recordings as the model given has them. Which of their sightings are independent is
+/// asked again of each model on the way, and of the one found: where others are, the search begins
+/// anew with these, so that a ladder's lines are all of the same rows. `recordings` are those on
+/// return, as the model found has them.
+[[nodiscard]] Discovery discover(PreparedRecordings& recordings, const Model& model,
+                                 const DiscoverOptions& options = {});
 
 }  // namespace trussmap

@@ -84,6 +84,7 @@ struct NoiseBudget {
   double horizon = 0.0;  ///< s; 0: a leg, whatever it takes
   double rms = 0.0;      ///< m, predicted error of the position after the horizon
   int windows = 0;
+  bool gyro = false;               ///< a robot that has one
   std::vector<NoiseShare> shares;  ///< the largest first
 };
 

@@ -9,11 +9,17 @@
 //   frames   where sightings come in dense frames, one frame in so long as their errors last
 //            (lasting_errors, fit_model.hpp)
 //   survey   points that contradict a map made of such frames without the survey
+//
+// Both are of the model: an effect that it lacks makes errors last, and they no longer do once it
+// is in. So they are judged again for a model with other effects (prepared_again); whoever judges
+// the same model judges it by the same rows.
 #pragma once
 
 #include "trussmap/fit_model.hpp"
 #include "trussmap/gate.hpp"
 
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,9 +30,22 @@ namespace trussmap {
 /// deviations; 0: none.
 [[nodiscard]] FitOptions gated_fit(double gate = kModelGate);
 
+/// What of recordings' sightings a model is judged by.
+struct UsedSightings {
+  std::size_t used = 0;
+  std::size_t all = 0;
+  double every = 0.0;  ///< s, of which one frame is used; 0: all are
+
+  [[nodiscard]] bool thinned() const { return used < all; }
+};
+
 struct PreparedRecordings {
   std::vector<DrivenRecording> recordings;
   std::vector<std::string> notes;  ///< what of the recordings is not used, and why
+  UsedSightings sightings;
+  /// Before anything was left out; nullptr where no model is asked what to use.
+  std::shared_ptr<const std::vector<DrivenRecording>> whole = nullptr;
+  FitOptions fit;  ///< by which that is judged
 };
 
 /// Thinned out. `every`: s between frames of sightings; 0: all;
@@ -40,5 +59,13 @@ struct PreparedRecordings {
                                                            std::optional<double> every = {}) {
   return prepare_recordings(with_wheels(std::move(recordings), model.robot), model, fit, every);
 }
+
+/// The same recordings as another model of the same robot has them; where no model is asked, as
+/// they are. Throws like fit_model.
+[[nodiscard]] PreparedRecordings prepared_again(const PreparedRecordings& prepared,
+                                                const Model& model);
+
+/// Whether the same is used of both, which are of the same recordings.
+[[nodiscard]] bool use_the_same(const PreparedRecordings& one, const PreparedRecordings& other);
 
 }  // namespace trussmap

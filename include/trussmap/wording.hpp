@@ -118,11 +118,18 @@ struct Advice {
 [[nodiscard]] std::string verdict_in_words(const Diagnosis& result);
 [[nodiscard]] std::string verdict_in_words(const Discovery& result);
 
+/// "judged by 104 of 976 sightings, one frame in 5 s"; empty where all are used.
+[[nodiscard]] std::string in_words(const UsedSightings& sightings);
+
 /// "the map is 1.6 % too small"; `scale`: what the map has to be multiplied by.
 [[nodiscard]] std::string map_scale_in_words(double scale);
 
 /// A finding's status and size, with all that is missing: "missing: hard iron; the compass ...".
 [[nodiscard]] std::string in_words(const Finding& finding);
+
+/// How the fit with a rival that is not told apart compares: ", its fit 3 behind"; empty where
+/// neither is worse by anything that shows.
+[[nodiscard]] std::string behind_in_words(const LookAlike& rival);
 
 /// "nothing more is significant".
 [[nodiscard]] std::string stop_in_words(const Discovery& result);

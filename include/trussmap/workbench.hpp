@@ -22,6 +22,7 @@
 #include "trussmap/diagnose.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/noise_fit.hpp"
+#include "trussmap/prepared_recordings.hpp"
 
 #include <cstddef>
 #include <functional>
@@ -105,6 +106,10 @@ class TriedModel {
   /// The model's effects are fitted whether or not they have coefficients. Throws like fit_model.
   TriedModel(std::shared_ptr<const std::vector<DrivenRecording>> recordings, const Model& model,
              const DiagnoseOptions& options = {},
+             const std::function<void(TryingStage)>& progress = {});
+
+  /// Of recordings as this model has them; `recordings` are those of them that it is judged by.
+  TriedModel(PreparedRecordings rows, const Model& model, const DiagnoseOptions& options = {},
              const std::function<void(TryingStage)>& progress = {});
 
   [[nodiscard]] const std::vector<DrivenRecording>& recordings() const;
@@ -200,6 +205,13 @@ class Workbench {
   Workbench(std::vector<DrivenRecording> recordings, WorkbenchLog log,
             const DiagnoseOptions& options = {}, const WorkbenchWatch& watch = {});
 
+  /// Both, of recordings as the model given has them: which of their sightings a model is judged by
+  /// is asked of each (prepared_again).
+  Workbench(PreparedRecordings rows, const Model& model, const DiagnoseOptions& options = {},
+            const WorkbenchWatch& watch = {});
+  Workbench(PreparedRecordings rows, WorkbenchLog log, const DiagnoseOptions& options = {},
+            const WorkbenchWatch& watch = {});
+
   [[nodiscard]] const TriedModel& now() const { return *now_; }
   [[nodiscard]] const WorkbenchLog& log() const { return log_; }
 
@@ -220,9 +232,12 @@ class Workbench {
 
  private:
   [[nodiscard]] TriedModel tried(const WorkbenchLog& log, const WorkbenchWatch& watch) const;
+  [[nodiscard]] TriedModel tried(const Model& model, const DiagnoseOptions& options,
+                                 const WorkbenchWatch& watch) const;
   [[nodiscard]] WorkbenchStep from_here(WorkbenchStep::Kind kind) const;
   void take(WorkbenchStep step, const WorkbenchWatch& watch);
 
+  PreparedRecordings rows_;  ///< without recordings of its own
   std::shared_ptr<const std::vector<DrivenRecording>> recordings_;
   DiagnoseOptions options_;
   WorkbenchLog log_;

@@ -49,7 +49,7 @@ ComparisonResult run_compare(const py::object& recordings, const py::object& mod
     told.next();
     result.fit = fit_model(used, result.input.model, how.fit);
     told.next();
-    result.found = compare(used, result.fit, how);
+    result.found = compare(*result.input.rows, result.fit, how);
     result.budget = noise_budget(used, result.input.model);
   });
   told.end();

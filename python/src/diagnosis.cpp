@@ -42,9 +42,11 @@ DiagnosisResult run_diagnose(const py::object& recordings, const py::object& mod
     told.next();
     result.fit = fit_model(used, result.input.model, result.how.fit);
     told.next();
-    result.found = diagnose(used, result.fit, result.how);
+    result.found = diagnose(*result.input.rows, result.fit, result.how);
+    take_rows(result.input);
     result.budget =
-        noise_budget(used, result.found.under ? result.found.under->fit.model : result.fit.model);
+        noise_budget(*result.input.recordings,
+                     result.found.under ? result.found.under->fit.model : result.fit.model);
   });
   told.end();
   return result;

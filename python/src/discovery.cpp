@@ -50,7 +50,6 @@ DiscoveryResult run_discover(const py::object& recordings, const py::object& mod
   });
   warn(result.input.mistakes);
   unlocked([&] {
-    const std::vector<DrivenRecording>& used = *result.input.recordings;
     DiscoverOptions how;
     how.diagnosis = result.how;
     how.most_effects = most;
@@ -76,8 +75,9 @@ DiscoveryResult run_discover(const py::object& recordings, const py::object& mod
           told.say("fitting \"" + stage.effect + "\"");
       }
     };
-    result.found = discover(used, result.input.model, how);
-    result.budget = noise_budget(used, result.found.found.model);
+    result.found = discover(*result.input.rows, result.input.model, how);
+    take_rows(result.input);
+    result.budget = noise_budget(*result.input.recordings, result.found.found.model);
   });
   told.end();
   return result;

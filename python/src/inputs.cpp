@@ -145,6 +145,11 @@ std::vector<std::vector<TimeSpan>> excluded_of(py::handle exclude, std::size_t r
   return result;
 }
 
+void take_rows(Prepared& input) {
+  input.recordings = {input.rows, &input.rows->recordings};
+  input.notes = input.rows->notes;
+}
+
 Prepared prepared(const Given& given, const UseOptions& use) {
   Read input = read(given);
   check_excluded(input.recordings, use.fit);
@@ -153,11 +158,10 @@ Prepared prepared(const Given& given, const UseOptions& use) {
        check_recordings(input.recordings, &input.model, input.model_name)) {
     result.mistakes.push_back(in_words(one));
   }
-  PreparedRecordings ready = prepare_recordings(
-      with_wheels(std::move(input.recordings), input.model.robot), input.model, use.fit, use.every);
-  result.recordings =
-      std::make_shared<const std::vector<DrivenRecording>>(std::move(ready.recordings));
-  result.notes = std::move(ready.notes);
+  result.rows = std::make_shared<PreparedRecordings>(
+      prepare_recordings(with_wheels(std::move(input.recordings), input.model.robot), input.model,
+                         use.fit, use.every));
+  take_rows(result);
   result.model = std::move(input.model);
   result.subject = subject_of(given);
   return result;

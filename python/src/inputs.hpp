@@ -9,6 +9,7 @@
 #include "trussmap/diagnose.hpp"
 #include "trussmap/gate.hpp"
 #include "trussmap/model.hpp"
+#include "trussmap/prepared_recordings.hpp"
 #include "trussmap/recording.hpp"
 
 #include <cstddef>
@@ -36,7 +37,7 @@ struct Given {
 
 /// Read.
 struct Read {
-  std::vector<Recording> recordings;  ///< as they are in their files
+  std::vector<DrivenRecording> recordings;  ///< as they are in their files
   Model model;
   std::string model_name;  ///< for messages
 };
@@ -46,7 +47,8 @@ struct Read {
 
 /// Read, checked and prepared for a fit.
 struct Prepared {
-  std::shared_ptr<const std::vector<DrivenRecording>> recordings;
+  std::shared_ptr<PreparedRecordings> rows;                        ///< as the model has them
+  std::shared_ptr<const std::vector<DrivenRecording>> recordings;  ///< those of them that are used
   Model model;
   std::vector<std::string> notes;
   std::vector<std::string> mistakes;  ///< what check_recordings finds, in words
@@ -60,6 +62,9 @@ struct UseOptions {
   std::optional<double> every;
   double level = kSignificance;
 };
+
+/// What a call has made of `rows` is what is used.
+void take_rows(Prepared& input);
 
 /// What these options are, for docstrings.
 inline constexpr const char* kUseDoc =

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -30,13 +31,20 @@ bool has_word(const std::string& text, std::initializer_list<const char*> words)
                      [&](const char* word) { return low.find(word) != std::string::npos; });
 }
 
-/// Of entries that are the same but for their name, the one that the column's name speaks for.
-double suits(const CatalogueEntry& entry, const std::string& covariate) {
-  const bool load = has_word(covariate, {"load", "mass", "weight", "kg"});
-  const bool drift = has_word(covariate, {"temp", "press", "wear", "bar"});
-  if (load && entry.name.starts_with("load")) return 0.2;
-  if (drift && entry.name.starts_with("tyre")) return 0.2;
-  return covariate.empty() || load || drift ? 0.0 : -0.1;
+/// How a column's name speaks for an entry; nothing where the entry asks for another kind of
+/// column: a load is no temperature. Any column may go with a channel by itself.
+std::optional<double> suits(const CatalogueEntry& entry, const std::string& covariate) {
+  const auto& also = entry.also_of;
+  if (std::find(also.begin(), also.end(), covariate) != also.end()) return 0.0;
+  const bool load = has_word(covariate, {"load", "mass", "weight", "kg", "cargo", "ballast"});
+  const bool warmth = has_word(covariate, {"temp", "warm", "heat"});
+  const bool tyre = warmth || has_word(covariate, {"press", "wear", "bar"});
+  if (entry.name.starts_with("load")) return load ? std::optional(0.2) : std::nullopt;
+  if (entry.name.starts_with("tyre")) return tyre ? std::optional(0.2) : std::nullopt;
+  if (entry.name.starts_with("gyro temperature")) {
+    return warmth ? std::optional(0.2) : std::nullopt;
+  }
+  return load || tyre ? 0.0 : -0.1;
 }
 
 /// What was measured, and so can show an effect.
@@ -218,9 +226,11 @@ Candidates of_catalogue(const Grounds& grounds) {
       std::vector<std::string> names(entry.also_of.begin(), entry.also_of.end());
       names.insert(names.end(), grounds.covariates.begin(), grounds.covariates.end());
       for (const std::string& name : names) {
+        const std::optional<double> log_prior = suits(entry, name);
+        if (!log_prior) continue;
         one.effect = catalogue_effect(entry, name);
         one.variable = name;
-        one.log_prior = suits(entry, name);
+        one.log_prior = *log_prior;
         found.push_back(one);
       }
     } else if (entry.has_parameters()) {

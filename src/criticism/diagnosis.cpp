@@ -11,6 +11,7 @@
 #include "criticism/refits.hpp"
 #include "criticism/remaining_errors.hpp"
 #include "criticism/trends.hpp"
+#include "criticism/unobservable.hpp"
 #include "criticism/verdict.hpp"
 #include "drive/slow_covariates.hpp"
 #include "linalg/dense.hpp"
@@ -56,13 +57,8 @@ class Diagnostician {
     result_.lacks = lacks_of(recordings_, fit_.model.robot, fit_.options);
     search_.run();
     result_.tried = static_cast<std::size_t>(search_.tried());
-    std::vector<std::size_t> missing;
-    for (const MissingEffect& one : search_.missing()) missing.push_back(one.tested);
-    for (const std::size_t one : missing) {
-      look_alikes_.push_back(
-          look_alikes_of(one, search_.tested(), missing, tests_, state_.adjustment.dof));
-    }
-    if (missing.empty()) {
+    for (std::size_t k = 0; k < search_.missing().size(); ++k) weigh_look_alikes(k);
+    if (search_.missing().empty()) {
       for (TestedEvent& one : test_events(state_, tests_)) result_.events.push_back(std::move(one));
       result_.noise = test_noise_laws(state_, tests_);
     }
@@ -72,6 +68,51 @@ class Diagnostician {
   }
 
  private:
+  /// Of one that is missing, and whether one of them explains more.
+  void weigh_look_alikes(std::size_t rank) {
+    constexpr int kMostExchanges = 2;
+    look_alikes_.emplace_back();
+    for (int exchange = 0;; ++exchange) {
+      std::vector<std::size_t> missing;
+      std::vector<Effect> others;
+      for (const MissingEffect& one : search_.missing()) {
+        missing.push_back(one.tested);
+        if (missing.size() - 1 != rank) others.push_back(joint_effect(one));
+      }
+      const Effect effect = joint_effect(search_.missing()[rank]);
+      std::vector<LookAlike> alike =
+          look_alikes_of(missing[rank], search_.tested(), missing, tests_, state_.adjustment.dof);
+      weigh_by_fits(alike, effect, tests_, [&](const Effect& one) {
+        std::vector<Effect> all = others;
+        all.push_back(one);
+        return if_fitted_with(recordings_, fit_, all);
+      });
+      const LookAlike* better = better_fitting(alike, effect);
+      const std::size_t at = better == nullptr ? search_.tested().size() : place_of(*better);
+      look_alikes_[rank] = std::move(alike);
+      const bool other = at < search_.tested().size() &&
+                         std::find(missing.begin(), missing.end(), at) == missing.end() &&
+                         !is_implausible(search_.tested()[at]);
+      if (!other || exchange == kMostExchanges) return;
+      search_.exchange(rank, at);
+    }
+  }
+
+  [[nodiscard]] Effect joint_effect(const MissingEffect& one) const {
+    Effect effect = search_.tested()[one.tested].candidate.effect;
+    effect.coefficients = one.joint.coefficients;
+    return effect;
+  }
+
+  /// Among all that was tested; their number where it is none of them.
+  [[nodiscard]] std::size_t place_of(const LookAlike& rival) const {
+    const std::vector<Tested>& tested = search_.tested();
+    const auto found = std::find_if(tested.begin(), tested.end(), [&rival](const Tested& one) {
+      return one.score.dof > 0 && find_among(one.candidate.effect, {rival}) != nullptr;
+    });
+    return static_cast<std::size_t>(found - tested.begin());
+  }
+
   /// What the effect of such coefficients moves the held-out legs by; empty where not known.
   [[nodiscard]] static Eigen::VectorXd moves(const Tested& one,
                                              const std::vector<double>& coefficients) {
@@ -129,38 +170,14 @@ class Diagnostician {
       return changes_nothing(one, with_it, floor) ? Status::negligible : Status::missing;
     }
     if (one.score.dof == 0) return Status::cannot_tell;
+    bool apart = false;  // of what is missing: then it is not there instead
     for (const std::vector<LookAlike>& rivals : look_alikes_) {
-      if (is_among(one.candidate.effect, rivals)) return Status::cannot_tell;
+      const LookAlike* same = find_among(one.candidate.effect, rivals);
+      if (same != nullptr && !same->told_apart()) return Status::cannot_tell;
+      apart = apart || same != nullptr;
     }
+    if (apart) return Status::absent;
     return detectable_rise(one, floor) <= kPractical ? Status::absent : Status::cannot_tell;
-  }
-
-  /// Not seen, but would be where the model explained the rest.
-  [[nodiscard]] static bool hidden_by_misfit(const Tested& one) {
-    const double prior_sd = facts_of(one.candidate.effect.channel).prior_sd * kLargestUncertainty;
-    for (std::size_t k = 0; k < one.score.share.size(); ++k) {
-      if (one.score.largest[k] > 0.0 && one.score.share[k] > kLeastShare &&
-          one.score.largest[k] < prior_sd * std::sqrt(one.score.information[k])) {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  [[nodiscard]] Unobservable why_unobservable(const Tested& one) const {
-    const auto& measurements = state_.problem.measurements;
-    Unobservable result{one.candidate.effect};
-    result.positions = std::any_of(measurements.begin(), measurements.end(), is_in_map_frame);
-    const Score& score = one.score;
-    const bool never = std::all_of(score.largest.begin(), score.largest.end(),
-                                   [](double most) { return most == 0.0; });
-    const bool nothing = std::all_of(score.share.begin(), score.share.end(),
-                                     [](double share) { return share < kLeastShare; });
-    result.why = never                          ? Unseen::never_happens
-                 : nothing && !result.positions ? Unseen::in_the_map
-                 : nothing                      ? Unseen::absorbed
-                                                : Unseen::too_small;
-    return result;
   }
 
   /// Among the missing; their number where it is none of them.
@@ -197,7 +214,7 @@ class Diagnostician {
         candidates_.back().effect = result_.findings.back().effect;
       } else if (one.candidate.form == Form::catalogue && !hidden_by_misfit(one) &&
                  !tests_.is_present(one.candidate.effect)) {
-        result_.unobservable.push_back(why_unobservable(one));
+        result_.unobservable.push_back(why_unobservable(one, state_.problem));
       }
     }
   }
@@ -388,6 +405,11 @@ DiagnosisRun diagnosis_beside(const std::vector<DrivenRecording>& recordings, co
     candidates.emplace_back();
     candidates.back().effect = one.effect;
   }
+  std::erase_if(result.unobservable, [&first](const Unobservable& one) {
+    return std::any_of(first.begin(), first.end(), [&one](const Finding& finding) {
+      return find_among(one.effect, finding.look_alikes) != nullptr;  // that is said already
+    });
+  });
   result.findings.insert(result.findings.begin(), first.begin(), first.end());
   run.candidates.insert(run.candidates.begin(), candidates.begin(), candidates.end());
   run.gross = std::move(constants);
@@ -413,20 +435,6 @@ Diagnosis diagnose(const std::vector<DrivenRecording>& recordings, const ModelFi
 Diagnosis diagnose(const std::vector<DrivenRecording>& recordings, const Model& model,
                    const DiagnoseOptions& options) {
   return diagnose(recordings, fit_model(recordings, model, options.fit), options);
-}
-
-bool is_slight_misfit(const Diagnosis& diagnosis) {
-  constexpr double kSlight = 0.001;  // p
-  return diagnosis.verdict == Diagnosis::Verdict::unexplained_misfit &&
-         diagnosis.objection == Objection::chi2 && diagnosis.p_value > kSlight;
-}
-
-std::vector<const Finding*> found_by(const Diagnosis& diagnosis) {
-  std::vector<const Finding*> found;
-  for (const Finding& one : diagnosis.findings) {
-    if (one.status == Status::missing || one.status == Status::negligible) found.push_back(&one);
-  }
-  return found;
 }
 
 }  // namespace trussmap

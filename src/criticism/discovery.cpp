@@ -156,6 +156,11 @@ class Discoverer {
 
   Discovery run() {
     while (true) {
+      if (result_.steps.size() > 1 && options_.go_on && !options_.go_on(result_.found)) {
+        stop(StopReason::told_to, {});
+        result_.consistent = false;
+        return std::move(result_);
+      }
       tell({DiscoveryStage::Kind::searching, {}});
       DiagnosisRun diagnosis =
           run_diagnosis(recordings_, result_.found, stated_, options_.diagnosis, legs_);
@@ -202,6 +207,7 @@ class Discoverer {
       if (result_.steps.size() == 1) result_.given = result_.found;
       step.chi2 = result_.found.chi2;
       step.dof = result_.found.dof;
+      step.left_out = result_.found.left_out.size();
     }
     step.reckoned_10 = shown(present_horizons().after_10);
     step.reckoned_30 = shown(present_horizons().after_30);
@@ -221,6 +227,7 @@ class Discoverer {
     DiscoveryStep step;
     step.chi2 = result_.found.chi2;
     step.dof = result_.found.dof;
+    step.left_out = result_.found.left_out.size();
     result_.steps.push_back(std::move(step));
     return result_.steps.back();
   }
@@ -317,6 +324,7 @@ class Discoverer {
     if (found_.size() == given_) return false;
     if (present_horizons().after_30.windows < kFewestWindows) return false;
     std::optional<Trial> best;
+    const Finding* asked = nullptr;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < result_.last.findings.size(); ++k) {
       if (!is_common_motion(candidates_[k]) ||
@@ -330,12 +338,15 @@ class Discoverer {
       if (chi2_of_all(fit) >= least || reckoned_change(fit).share >= kLess) continue;
       least = chi2_of_all(fit);
       best = std::move(trials.front());
+      asked = &result_.last.findings[k];
     }
     if (!best) return false;
     found_.push_back(best->candidate);
     result_.found = std::move(best->fit);
     DiscoveryStep& step = record();
     step.added = result_.found.model.effects.back();
+    step.predicted_decrease = asked->score;
+    step.predicted = asked->held_out;
     return true;
   }
 

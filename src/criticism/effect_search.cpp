@@ -239,6 +239,16 @@ void EffectSearch::take_known_causes(const FitState& ground, const ScoreTest& le
   }
 }
 
+void EffectSearch::exchange(std::size_t rank, std::size_t tested) {
+  missing_.at(rank) = {tested, {}};
+  nuisance_.resize(nuisance_.rows(), 0);
+  for (const MissingEffect& one : missing_) {
+    append_columns(nuisance_,
+                   tests_.test({tested_[one.tested].candidate.effect}).front().projected);
+  }
+  estimate_jointly();
+}
+
 /// Sizes of all that is missing, each with the others there.
 void EffectSearch::estimate_jointly() {
   for (MissingEffect& one : missing_) {

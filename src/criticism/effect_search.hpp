@@ -48,6 +48,9 @@ class EffectSearch {
 
   void run();
 
+  /// Another in the place of one that is missing: its look-alike, which fits better.
+  void exchange(std::size_t rank, std::size_t tested);
+
   [[nodiscard]] const std::vector<Tested>& tested() const { return tested_; }
   [[nodiscard]] const std::vector<MissingEffect>& missing() const {
     return missing_;

@@ -6,6 +6,7 @@
 #include "calibration/wheel_calibration.hpp"
 #include "criticism/candidates.hpp"
 #include "criticism/effect_strength.hpp"
+#include "criticism/gross_cause.hpp"
 #include "criticism/look_alikes.hpp"
 #include "criticism/refits.hpp"
 #include "effects/channel_physics.hpp"
@@ -45,12 +46,15 @@ bool is_scale(Channel channel) {
   return channel == Channel::travel || channel == Channel::sideways;
 }
 
+bool measures_scale(const std::vector<DrivenRecording>& recordings, const ModelFit& given) {
+  return measures_distance(recordings, fitter_options(given.options).problem, given.model.noise);
+}
+
 /// Those that the recordings can have, and the model lacks; without coefficients.
 std::vector<Effect> constants_for(const std::vector<DrivenRecording>& recordings,
                                   const ModelFit& given) {
   const FitState& fit = *given.state;
-  const bool scale =
-      measures_distance(recordings, fitter_options(given.options).problem, given.model.noise);
+  const bool scale = measures_scale(recordings, given);
   const bool gyro = has_gyro(fit.recordings);
   std::vector<Effect> result;
   const ShapeContext context(fit.recordings, fit.model.robot, fit.paths);
@@ -274,28 +278,9 @@ double per_dof(const ModelFit& fit) {
   return chi2_of_all(fit) / std::max(1, fit.dof);
 }
 
-}  // namespace
-
-std::optional<GrossConstants> gross_constants(const std::vector<DrivenRecording>& recordings,
-                                              const ModelFit& given) {
-  if (given.p_value > kMisfit) return std::nullopt;
-  const std::vector<Effect> constants = constants_for(recordings, given);
-  if (constants.empty()) return std::nullopt;
-  const std::size_t first = given.model.effects.size();
-  const std::optional<ModelFit> all = with_all(recordings, given, constants);
-  if (!all || !matters(*all, first)) return std::nullopt;
-  const std::optional<ModelFit> strong = strong_ones(recordings, *all, first);
-  if (!strong) return std::nullopt;
-  const ModelFit sure = sure_ones(recordings, *strong, first);
-  if (!matters(sure, first) || per_dof(sure) > kMostLeft * per_dof(given)) return std::nullopt;
-  return GrossConstants{surest_first(recordings, with_wheel_scale(recordings, sure, first), first),
-                        first};
-}
-
-namespace {
-
 /// What else could leave its trace, at a fit that has it.
-std::vector<LookAlike> look_alikes_at(const ModelFit& fit, const ScoreTest& at_fit,
+std::vector<LookAlike> look_alikes_at(const std::vector<DrivenRecording>& recordings,
+                                      const ModelFit& fit, const ScoreTest& at_fit,
                                       std::size_t place) {
   const FitState& state = *fit.state;
   const Effect& effect = fit.model.effects[place];
@@ -308,8 +293,67 @@ std::vector<LookAlike> look_alikes_at(const ModelFit& fit, const ScoreTest& at_f
     asked.emplace_back();
     asked.back().candidate = one;
   }
-  return look_alikes_of(0, asked, {}, tests, state.adjustment.dof);
+  std::vector<LookAlike> alike = look_alikes_of(0, asked, {}, tests, state.adjustment.dof);
+  weigh_by_fits(alike, effect, tests, [&](const Effect& one) {
+    std::vector<Effect> effects = fit.model.effects;
+    effects[place] = one;
+    return with_others(recordings, fit, std::move(effects));
+  });
+  return alike;
 }
+
+/// One that a look-alike fits clearly better than is that.
+GrossConstants with_better_fits(const std::vector<DrivenRecording>& recordings,
+                                GrossConstants constants) {
+  for (std::size_t k = constants.first; k < constants.fit.model.effects.size(); ++k) {
+    const Effect effect = constants.fit.model.effects[k];
+    const ScoreTest at_fit(*constants.fit.state);
+    const std::vector<LookAlike> alike = look_alikes_at(recordings, constants.fit, at_fit, k);
+    const LookAlike* better = better_fitting(alike, effect);
+    if (better == nullptr) continue;
+    std::vector<Effect> effects = constants.fit.model.effects;
+    effects[k] = better->effect;
+    effects[k].coefficients = at_fit.lacking(k, effect).test({better->effect}).front().coefficients;
+    std::optional<ModelFit> fit = with_others(recordings, constants.fit, std::move(effects));
+    if (fit && chi2_of_all(*fit) < chi2_of_all(constants.fit)) constants.fit = *std::move(fit);
+  }
+  return constants;
+}
+
+/// Nothing where there are none.
+std::optional<GrossConstants> sure_constants(const std::vector<DrivenRecording>& recordings,
+                                             const ModelFit& given) {
+  const std::vector<Effect> constants = constants_for(recordings, given);
+  if (constants.empty()) return std::nullopt;
+  const std::size_t first = given.model.effects.size();
+  const std::optional<ModelFit> all = with_all(recordings, given, constants);
+  if (!all || !matters(*all, first)) return std::nullopt;
+  const std::optional<ModelFit> strong = strong_ones(recordings, *all, first);
+  if (!strong) return std::nullopt;
+  const ModelFit sure = sure_ones(recordings, *strong, first);
+  if (!matters(sure, first) || per_dof(sure) > kMostLeft * per_dof(given)) return std::nullopt;
+  return with_better_fits(
+      recordings,
+      {surest_first(recordings, with_wheel_scale(recordings, sure, first), first), first});
+}
+
+}  // namespace
+
+std::optional<GrossConstants> gross_constants(const std::vector<DrivenRecording>& recordings,
+                                              const ModelFit& given) {
+  constexpr double kExplained = 1e-3;  // p
+  if (given.p_value > kMisfit) return std::nullopt;
+  std::optional<GrossConstants> constants = sure_constants(recordings, given);
+  if (constants && constants->fit.p_value > kExplained) return constants;
+  // What constants leave, or cannot be told by, may be one error of another kind.
+  if (std::optional<ModelFit> cause =
+          gross_cause(recordings, given, measures_scale(recordings, given))) {
+    return GrossConstants{*std::move(cause), given.model.effects.size()};
+  }
+  return constants;
+}
+
+namespace {
 
 /// `most`: the chi^2 that all constants together take away.
 Finding finding_at(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
@@ -332,7 +376,7 @@ Finding finding_at(const std::vector<DrivenRecording>& recordings, const ModelFi
     result.minimal_detectable.push_back(std::sqrt(kDetectableScore) * result.sd.back());
   }
   result.joint_sd = result.sd;
-  result.look_alikes = look_alikes_at(fit, at_fit, place);
+  result.look_alikes = look_alikes_at(recordings, fit, at_fit, place);
   return result;
 }
 

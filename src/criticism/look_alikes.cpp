@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/look_alikes.hpp"
 
+#include "criticism/effect_strength.hpp"
+#include "fit/fit_state.hpp"
 #include "linalg/dense.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace trussmap {
 namespace {
@@ -78,10 +81,63 @@ const LookAlike* closest_rival(const std::vector<LookAlike>& alike) {
   return found == alike.end() ? nullptr : &*found;
 }
 
-bool is_among(const Effect& effect, const std::vector<LookAlike>& rivals) {
-  return std::any_of(rivals.begin(), rivals.end(), [&](const LookAlike& one) {
+namespace {
+
+constexpr std::size_t kMostFits = 6;
+constexpr std::size_t kFitsOfMany = 2;
+constexpr std::size_t kMany = 20000;  // measurements, of which a fit takes seconds
+
+/// Places of those that the tests have nearest, nearest first.
+std::vector<std::size_t> nearest_of(const std::vector<LookAlike>& alike, std::size_t most) {
+  std::vector<std::size_t> order(alike.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&alike](std::size_t a, std::size_t b) {
+    return alike[a].behind < alike[b].behind;
+  });
+  if (order.size() > most) order.resize(most);
+  return order;
+}
+
+bool all_fitted(const ModelFit& fit) {
+  return std::all_of(fit.effects.begin(), fit.effects.end(),
+                     [](const EffectEstimate& one) { return one.not_fitted.empty(); });
+}
+
+}  // namespace
+
+void weigh_by_fits(std::vector<LookAlike>& alike, const Effect& effect, const ScoreTest& tests,
+                   const FitWith& with) {
+  if (alike.empty()) return;
+  const std::optional<ModelFit> winner = with(effect);
+  if (!winner || !all_fitted(*winner)) return;
+  const double noise = std::max(1.0, winner->chi2 / std::max(1, winner->dof));
+  const bool many = winner->state->problem.measurements.size() > kMany;
+  for (const std::size_t k : nearest_of(alike, many ? kFitsOfMany : kMostFits)) {
+    Effect rival = alike[k].effect;
+    rival.coefficients = tests.test({rival}).front().coefficients;
+    const std::optional<ModelFit> fit = with(rival);
+    if (!fit || !all_fitted(*fit)) continue;
+    alike[k].behind = (chi2_of_all(*fit) - chi2_of_all(*winner)) / noise;
+  }
+}
+
+const LookAlike* better_fitting(const std::vector<LookAlike>& alike, const Effect& effect) {
+  constexpr double kClearly = 4.0;  // of chi^2, and for each coefficient
+  const auto cost = [&effect](const LookAlike& one) {
+    return one.behind + kClearly * (static_cast<double>(one.effect.shape.size()) -
+                                    static_cast<double>(effect.shape.size()));
+  };
+  const auto best = std::min_element(
+      alike.begin(), alike.end(),
+      [&cost](const LookAlike& a, const LookAlike& b) { return cost(a) < cost(b); });
+  return best == alike.end() || cost(*best) > -kClearly ? nullptr : &*best;
+}
+
+const LookAlike* find_among(const Effect& effect, const std::vector<LookAlike>& rivals) {
+  const auto found = std::find_if(rivals.begin(), rivals.end(), [&](const LookAlike& one) {
     return one.effect.name == effect.name && one.effect.shape == effect.shape;
   });
+  return found == rivals.end() ? nullptr : &*found;
 }
 
 }  // namespace trussmap

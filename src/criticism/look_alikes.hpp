@@ -8,6 +8,8 @@
 #include "trussmap/diagnose.hpp"
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <vector>
 
 namespace trussmap {
@@ -24,6 +26,22 @@ namespace trussmap {
                                               const std::vector<Effect>& rivals,
                                               const ScoreTest& tests, int dof);
 
-[[nodiscard]] bool is_among(const Effect& effect, const std::vector<LookAlike>& rivals);
+/// The model with an effect in the place of the one that others look like; nothing where that
+/// cannot be fitted.
+using FitWith = std::function<std::optional<ModelFit>(const Effect& effect)>;
+
+/// `behind` of those that are nearest to first order by fits: columns that are nearly parallel, or
+/// a change beyond first order, leave it to these. Both without coefficients of their own begin
+/// with those that the tests have.
+void weigh_by_fits(std::vector<LookAlike>& alike, const Effect& effect, const ScoreTest& tests,
+                   const FitWith& with);
+
+/// One that fits clearly better, an extra coefficient counted; nullptr where there is none.
+[[nodiscard]] const LookAlike* better_fitting(const std::vector<LookAlike>& alike,
+                                              const Effect& effect);
+
+/// nullptr where it is none of them.
+[[nodiscard]] const LookAlike* find_among(const Effect& effect,
+                                          const std::vector<LookAlike>& rivals);
 
 }  // namespace trussmap

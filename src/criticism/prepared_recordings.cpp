@@ -41,28 +41,60 @@ FitOptions gated_fit(double gate) {
   return options;
 }
 
+namespace {
+
+/// One frame in so long; where errors of sightings last, for that.
+void thin(PreparedRecordings& prepared, double every, bool lasts) {
+  const std::size_t all = sightings_of(prepared.recordings);
+  prepared.sightings = {all, all, 0.0};
+  if (!(every > 0.0)) return;
+  std::vector<DrivenRecording> thinned = thinned_frames(prepared.recordings, every);
+  const std::size_t used = sightings_of(thinned);
+  if (used == all) return;
+  prepared.recordings = std::move(thinned);
+  prepared.sightings = {used, all, every};
+  prepared.notes.push_back(fmt::format(
+      "of {} sightings {} are used, one frame in {:g} s{}", all, used, every,
+      lasts ? ": errors of sightings last so long in this model (--every 0: all)" : ""));
+}
+
+/// As a model has the whole of them.
+void judge_rows(PreparedRecordings& prepared, const Model& model) {
+  FitOptions how = prepared.fit;
+  how.use_survey = false;
+  prepared.recordings = *prepared.whole;
+  const ModelFit without_survey = fit_model(prepared.recordings, model, how);
+  if (prepared.fit.use_survey) leave_contradicting_points_out(prepared, without_survey);
+  thin(prepared, lasting_errors(without_survey).lasts, true);
+}
+
+}  // namespace
+
 PreparedRecordings prepare_recordings(std::vector<DrivenRecording> recordings, const Model& model,
                                       const FitOptions& fit, std::optional<double> every) {
   PreparedRecordings prepared;
-  prepared.recordings = std::move(recordings);
-  double lasts = every.value_or(0.0);
-  if (!every && has_dense_frames(prepared.recordings)) {
-    FitOptions how = fit;
-    how.use_survey = false;
-    const ModelFit without_survey = fit_model(prepared.recordings, model, how);
-    lasts = lasting_errors(without_survey).lasts;
-    if (fit.use_survey) leave_contradicting_points_out(prepared, without_survey);
+  prepared.fit = fit;
+  if (!every && has_dense_frames(recordings)) {
+    prepared.whole = std::make_shared<const std::vector<DrivenRecording>>(std::move(recordings));
+    judge_rows(prepared, model);
+    return prepared;
   }
-  if (!(lasts > 0.0)) return prepared;
-  std::vector<DrivenRecording> thinned = thinned_frames(prepared.recordings, lasts);
-  const std::size_t all = sightings_of(prepared.recordings);
-  const std::size_t used = sightings_of(thinned);
-  if (used == all) return prepared;
-  prepared.recordings = std::move(thinned);
-  prepared.notes.push_back(
-      fmt::format("of {} sightings {} are used, one frame in {:g} s{}", all, used, lasts,
-                  every ? "" : ": errors of sightings last so long (--every 0: all)"));
+  prepared.recordings = std::move(recordings);
+  thin(prepared, every.value_or(0.0), false);
   return prepared;
+}
+
+PreparedRecordings prepared_again(const PreparedRecordings& prepared, const Model& model) {
+  if (!prepared.whole) return prepared;
+  PreparedRecordings again;
+  again.whole = prepared.whole;
+  again.fit = prepared.fit;
+  judge_rows(again, model);
+  return again;
+}
+
+bool use_the_same(const PreparedRecordings& one, const PreparedRecordings& other) {
+  return one.notes == other.notes;
 }
 
 }  // namespace trussmap

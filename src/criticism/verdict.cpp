@@ -3,6 +3,7 @@
 #include "criticism/verdict.hpp"
 
 #include "statistics/multiple_tests.hpp"
+#include "trussmap/diagnose.hpp"
 
 #include <algorithm>
 
@@ -14,6 +15,20 @@ Objection misfit_of(double p_value, const std::vector<Trend>& trends, double lev
   for (const Trend& one : trends) of_trends = std::min(of_trends, one.p_adjusted);
   if (bonferroni(p_value, kQuestions) < level) return Objection::chi2;
   return bonferroni(of_trends, kQuestions) < level ? Objection::trend : Objection::none;
+}
+
+bool is_slight_misfit(const Diagnosis& diagnosis) {
+  constexpr double kSlight = 0.001;  // p
+  return diagnosis.verdict == Diagnosis::Verdict::unexplained_misfit &&
+         diagnosis.objection == Objection::chi2 && diagnosis.p_value > kSlight;
+}
+
+std::vector<const Finding*> found_by(const Diagnosis& diagnosis) {
+  std::vector<const Finding*> found;
+  for (const Finding& one : diagnosis.findings) {
+    if (one.status == Status::missing || one.status == Status::negligible) found.push_back(&one);
+  }
+  return found;
 }
 
 }  // namespace trussmap

@@ -145,7 +145,27 @@ std::vector<EffectEstimate> estimates(const Fitting& now) {
   return result;
 }
 
-void warn(int rounds, const FitChange& change, FitState& fit) {
+/// What of a last round could be seen in any figure; empty where nothing could.
+std::string still_moving(const FitterOptions& options, const FitChange& change) {
+  constexpr double kSeen = 1e-3;         // sds
+  constexpr double kPathSeen = 1e-5;     // m and rad
+  constexpr double kCoefficient = 1e-2;  // sds
+  const double coefficient = change.coefficients * options.still;
+  std::string moving;
+  const auto add = [&moving](const std::string& one) {
+    moving += (moving.empty() ? "" : ", ") + one;
+  };
+  if (change.path > kPathSeen) add(joined("the path by up to ", change.path, " m or rad"));
+  if (change.offsets > kSeen) {
+    add(joined("a measurement by up to ", change.offsets, " standard deviations"));
+  }
+  if (coefficient > kCoefficient) {
+    add(joined("a coefficient by up to ", coefficient, " standard errors"));
+  }
+  return moving;
+}
+
+void warn(int rounds, const FitterOptions& options, const FitChange& change, FitState& fit) {
   for (const NoiseProcess& one : fit.model.noise.processes) {
     if (!(one.tails > 0.0) || has_used_tails(one)) continue;
     fit.adjustment.warnings.push_back(
@@ -153,9 +173,11 @@ void warn(int rounds, const FitChange& change, FitState& fit) {
                " are not used: only white noise of sightings has them"));
   }
   if (fit.settled) return;
-  fit.adjustment.warnings.push_back(joined(
-      "shapes and path did not settle in ", rounds, " rounds; in the last the path moved by up to ",
-      change.path, " m or rad, a measurement by up to ", change.offsets, " standard deviations"));
+  const std::string moving = still_moving(options, change);
+  fit.settled = moving.empty();
+  if (fit.settled) return;
+  fit.adjustment.warnings.push_back(joined("shapes and path did not settle in ", rounds,
+                                           " rounds; the last still moved ", moving));
 }
 
 }  // namespace
@@ -248,7 +270,7 @@ FitState fit_recordings(const std::vector<DrivenRecording>& recordings, const Mo
   }
   if (options.paths && !now.columns_see_paths()) lay_paths(fit);
   fit.effects = estimates(now);
-  warn(std::min(now.round + 1, options.max_rounds), change, fit);
+  warn(std::min(now.round + 1, options.max_rounds), options, change, fit);
   return std::move(fit);
 }
 

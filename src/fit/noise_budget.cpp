@@ -84,6 +84,7 @@ class Budget {
     if (noise.travel_per_s > 0.0) {
       add("travel_per_s", white_square(window, noise, {&Noise::travel_per_s}));
     }
+    gyro_ = gyro_ || !window.drive.gyro.empty() || !window.drive.yaw_rate.empty();
     if (!window.drive.gyro.empty()) add("gyro", white_square(window, noise, {&Noise::gyro}));
     for (const NoiseProcess& one : noise.processes) {
       add(name_of_source(one), process_square(window, one));
@@ -95,6 +96,7 @@ class Budget {
     NoiseBudget budget;
     budget.horizon = horizon;
     budget.windows = windows_;
+    budget.gyro = gyro_;
     double whole = 0.0;
     for (const auto& [source, square] : squares_) whole += square;
     budget.rms = std::sqrt(whole / std::max(windows_, 1));
@@ -113,6 +115,7 @@ class Budget {
   const Model& model_;
   std::map<std::string, double> squares_;  ///< m^2, summed over the windows
   int windows_ = 0;
+  bool gyro_ = false;
 };
 
 struct Stretch {

@@ -185,7 +185,7 @@ Page comparison_page(const ComparisonEvidence& evidence, const std::string& subj
   page.command = "compare";
   page.subject = subject;
   page.tone = !result.consistent() ? Tone::bad : result.tested() ? Tone::good : Tone::neutral;
-  page.verdict = page_verdict(result);
+  page.verdict = with_judged(page_verdict(result), result.sightings);
   page.answers = answers_of(rows_on(evidence.model));
   for (const std::string& line : result.warnings) {
     page.notes.push_back(capitalised(typeset(line)) + ".");

@@ -57,7 +57,9 @@ std::string legs_end(const Diagnosis& diagnosis) {
   const HeldOut& legs = diagnosis.held_out;
   if (legs.legs.empty()) return "";
   return fmt::format(" Legs end {} off{}.", distance_text(legs.arrival_rms),
-                     as_good_as_noise(legs) ? ", as good as this robot's noise allows" : "");
+                     diagnosis.objection == Objection::none && as_good_as_noise(legs)
+                         ? ", as good as this robot's noise allows"
+                         : "");
 }
 
 std::string page_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
@@ -229,7 +231,7 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidenc
   PageContent page;
   page.command = "diagnose";
   page.subject = subject;
-  page.verdict = page_verdict(diagnosis, evidence);
+  page.verdict = with_judged(page_verdict(diagnosis, evidence), diagnosis.sightings);
   const bool slight = is_slight_misfit(diagnosis);
   page.tone = diagnosis.verdict != Diagnosis::Verdict::nothing_missing && !slight ? Tone::bad
               : noise_is_wrong(diagnosis)                                         ? Tone::bad

@@ -17,6 +17,32 @@ std::string length(double metres, double beside) {
                                         : fmt::format("{:.3f} m", metres);
 }
 
+/// Those that are not told apart, then those that are; of either three.
+std::string look_alikes_text(const std::vector<LookAlike>& all) {
+  constexpr std::size_t kMost = 3;
+  std::string same, apart;
+  std::size_t sames = 0, aparts = 0;
+  for (const LookAlike& rival : all) {
+    const std::string alike = fmt::format("{} ({}), cosine {:.3f}", rival.effect.name,
+                                          formula_of(rival.effect), rival.cosine);
+    if (rival.told_apart()) {
+      if (++aparts > kMost) continue;
+      apart += fmt::format(
+          "  looks much like it: {}; all measurements tell it apart (chi^2 {:.0f} behind)\n", alike,
+          rival.behind);
+    } else {
+      if (++sames > kMost) continue;
+      same += fmt::format("  looks the same here: {}{}\n", alike, behind_in_words(rival));
+    }
+  }
+  if (sames > kMost) same += fmt::format("  looks the same here: {} more\n", sames - kMost);
+  if (aparts > kMost) {
+    apart += fmt::format("  looks much like it: {} more, which all measurements tell apart\n",
+                         aparts - kMost);
+  }
+  return same + apart;
+}
+
 std::string missing_text(const Diagnosis& result, TextStyle style) {
   std::string text;
   if (result.verdict != Diagnosis::Verdict::missing) {
@@ -30,16 +56,11 @@ std::string missing_text(const Diagnosis& result, TextStyle style) {
     text += fmt::format("{}\n", verdict_text(mood, in_words(one), style));
     const Explanation explained = explanation_of(one.effect);
     if (explained.unusual) text += fmt::format("  not its usual sign: {}\n", explained.does);
-    for (const LookAlike& rival : one.look_alikes) {
-      const std::string alike = fmt::format("{} ({}), cosine {:.3f}", rival.effect.name,
-                                            formula_of(rival.effect), rival.cosine);
-      text += rival.told_apart()
-                  ? fmt::format(
-                        "  looks much like it: {}; all measurements tell it apart (chi^2 {:.0f} "
-                        "behind)\n",
-                        alike, rival.behind)
-                  : fmt::format("  looks the same here: {}\n", alike);
-    }
+    text += look_alikes_text(one.look_alikes);
+  }
+  if (const std::string by = in_words(result.sightings);
+      result.verdict == Diagnosis::Verdict::missing && !by.empty()) {
+    text += fmt::format("  {}\n", by);
   }
   if (!result.missing.empty() && !result.held_out.legs.empty()) {
     const bool several = result.findings.size() > 1 && !result.findings[1].joint.empty();

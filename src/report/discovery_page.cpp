@@ -33,7 +33,9 @@ std::vector<LadderStep> ladder_of(const Discovery& discovery) {
   std::vector<LadderStep> steps;
   for (const DiscoveryStep& one : discovery.steps) {
     steps.push_back({step_name(one), one.held_out.arrival_rms, one.chi2, one.dof});
-    if (one.added) steps.back().predicted_rms = one.predicted.arrival_rms;
+    if (one.added && one.predicted.arrival_rms > 0.0) {
+      steps.back().predicted_rms = one.predicted.arrival_rms;
+    }
   }
   return steps;
 }
@@ -87,11 +89,11 @@ std::string whose_noise(const Discovery& discovery) {
 }
 
 /// "3.1 cm off, as good as this robot's noise allows", and by which noise.
-std::string end_off(const HeldOut& legs, bool noise_found) {
+std::string end_off(const HeldOut& legs, bool noise_found, bool explained) {
   return fmt::format("Legs end {} off{}.", distance_text(legs.arrival_rms),
-                     !as_good_as_noise(legs) ? ""
-                     : noise_found           ? ", as good as the noise found allows"
-                                             : ", as good as this robot's noise allows");
+                     !explained || !as_good_as_noise(legs) ? ""
+                     : noise_found                         ? ", as good as the noise found allows"
+                                   : ", as good as this robot's noise allows");
 }
 
 bool is_unexplained(const Discovery& discovery) {
@@ -102,7 +104,10 @@ std::string found_verdict(const Discovery& discovery, const DiscoveryEvidence& e
   const auto& effects = evidence.effects;
   const Comparison& now = evidence.found.comparison;
   const bool noise = noise_is_wrong(discovery.last);
-  const std::string off = now.held_out.legs.empty() ? "" : " " + end_off(now.held_out, noise);
+  const std::string off =
+      now.held_out.legs.empty()
+          ? ""
+          : " " + end_off(now.held_out, noise, discovery.consistent && now.consistent());
   if (!effects.empty()) {
     const std::string gain =
         gain_sentence(evidence.given.comparison, now, effects.size() == 1 ? "it" : "them");
@@ -201,7 +206,7 @@ Page discovery_page(const Discovery& discovery, const DiscoveryEvidence& evidenc
   PageContent page;
   page.command = "discover";
   page.subject = subject;
-  page.verdict = found_verdict(discovery, evidence);
+  page.verdict = with_judged(found_verdict(discovery, evidence), discovery.sightings);
   const bool noise_alone = !found_any && noise_is_wrong(discovery.last);
   page.tone = noise_alone || is_unexplained(discovery) ? Tone::bad
               : discovery.consistent                   ? Tone::good

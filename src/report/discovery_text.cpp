@@ -8,6 +8,21 @@
 namespace trussmap {
 namespace {
 
+/// Why degrees of freedom rise from line to line, or fall by more than the coefficients.
+std::string come_and_gone_text(const Discovery& result) {
+  std::string text;
+  for (std::size_t k = 1; k < result.steps.size(); ++k) {
+    const DiscoveryStep& step = result.steps[k];
+    const std::size_t before = result.steps[k - 1].left_out;
+    if (step.left_out == before || !step.added) continue;
+    const bool back = step.left_out < before;
+    const std::size_t count = back ? before - step.left_out : step.left_out - before;
+    text += fmt::format("  with {} {} measurement{} that contradicted all others {}\n",
+                        step.added->name, count, count == 1 ? "" : "s", back ? "come back" : "go");
+  }
+  return text;
+}
+
 /// `noise_found`: the model found has other noise than the one given.
 std::string steps_text(const Discovery& result, bool noise_found, TextStyle style) {
   std::string text;
@@ -31,14 +46,16 @@ std::string steps_text(const Discovery& result, bool noise_found, TextStyle styl
         {name, fmt::format("{:.1f}", step.chi2), fmt::format("{}", step.dof),
          step.added ? fmt::format("{:.1f}", before) : "-",
          step.held_out.legs.empty() ? "-" : fmt::format("{:.1f}", 1e3 * step.held_out.arrival_rms),
-         step.added ? fmt::format("{:.1f}", 1e3 * step.predicted.arrival_rms) : "-",
+         step.added && !step.held_out.legs.empty()
+             ? fmt::format("{:.1f}", 1e3 * step.predicted.arrival_rms)
+             : "-",
          fmt::format("{}", step.held_out.legs.size())});
     if (!reckoned) continue;
     for (const std::optional<double>& error : {step.reckoned_10, step.reckoned_30}) {
       table.rows.back().push_back(error ? fmt::format("{:.0f}", 1e3 * *error) : "-");
     }
   }
-  text += fmt::format("\n{}", table_text(table, style));
+  text += fmt::format("\n{}{}", table_text(table, style), come_and_gone_text(result));
   const Diagnosis& last = result.last;
   const bool anew = noise_found || (last.under && last.under->noise.changed());
   if (result.steps.size() > 1 && anew) {
@@ -63,10 +80,17 @@ std::string discovery_text(const Discovery& result, const Noise& given,
   }
   text += steps_text(result, noise_found, style);
   for (const DiscoveryStep& step : result.steps) {
+    constexpr std::size_t kMost = 3;
+    std::size_t rivals = 0;
     for (const LookAlike& rival : step.look_alikes) {
-      if (rival.told_apart()) continue;
-      text += fmt::format("  instead of {} it could be: {} ({}), cosine {:.3f}\n", step.added->name,
-                          rival.effect.name, formula_of(rival.effect), rival.cosine);
+      if (rival.told_apart() || ++rivals > kMost) continue;
+      text += fmt::format("  instead of {} it could be: {} ({}), cosine {:.3f}{}\n",
+                          step.added->name, rival.effect.name, formula_of(rival.effect),
+                          rival.cosine, behind_in_words(rival));
+    }
+    if (rivals > kMost) {
+      text +=
+          fmt::format("  instead of {} it could be: {} more\n", step.added->name, rivals - kMost);
     }
   }
   for (const std::string& warning : result.found.warnings) {

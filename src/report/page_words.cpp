@@ -230,6 +230,19 @@ std::vector<std::string> unseen_names(const Diagnosis& diagnosis) {
   return names;
 }
 
+std::string with_judged(const std::string& verdict, const UsedSightings& sightings) {
+  const std::string by = in_words(sightings);
+  return by.empty() ? verdict : verdict + " " + capitalised(by) + ".";
+}
+
+void shorten(std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 3;
+  if (names.size() <= kMost + 1) return;  // "1 more" is no shorter
+  const std::size_t more = names.size() - kMost;
+  names.resize(kMost);
+  names.push_back(fmt::format("{} more", more));
+}
+
 std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& rivals) {
   if (rivals.empty()) {
     return fmt::format("Nothing else in the catalogue looks like {} in these recordings.",
@@ -247,6 +260,9 @@ std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& riva
     names.push_back(name_in_words(rival.effect) +
                     (entry == nullptr ? "" : " (" + std::string(entry->cause) + ")"));
   }
+  const std::size_t aparts = apart.size();
+  shorten(names);
+  shorten(apart);
   std::string open =
       names.empty() ? std::string()
                     : fmt::format("Instead of {} it could be {}: these recordings cannot tell.",
@@ -255,8 +271,8 @@ std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& riva
   const std::string told = fmt::format(
       "{} look{} much like it, but all measurements together tell {} apart (chi\u00b2 {}{:.0f} "
       "behind).",
-      capitalised(listed(apart)), apart.size() == 1 ? "s" : "", apart.size() == 1 ? "it" : "them",
-      apart.size() == 1 ? "" : "at least ", nearest);
+      capitalised(listed(apart)), aparts == 1 ? "s" : "", aparts == 1 ? "it" : "them",
+      aparts == 1 ? "" : "at least ", nearest);
   return open.empty() ? told : open + " " + told;
 }
 

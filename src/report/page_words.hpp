@@ -80,6 +80,12 @@ struct SizeText {
 /// The first few effects that these recordings cannot show, and "3 more".
 [[nodiscard]] std::vector<std::string> unseen_names(const Diagnosis& diagnosis);
 
+/// A page's verdict, and by how many of the sightings it is one.
+[[nodiscard]] std::string with_judged(const std::string& verdict, const UsedSightings& sightings);
+
+/// The first three, and "17 more".
+void shorten(std::vector<std::string>& names);
+
 /// "It could also be ...", or that it could not.
 [[nodiscard]] std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& rivals);
 

@@ -74,16 +74,29 @@ std::vector<std::string> rival_sentences(const Effect& effect, const std::vector
   std::vector<std::string> sentences;
   if (!alike.empty() || near.empty()) sentences.push_back(rivals_note(effect, alike));
   if (near.empty()) return sentences;
-  std::vector<std::string> names;
-  names.reserve(near.size());
+  constexpr double kBehind = 1.0;  // of chi^2
+  std::vector<std::string> behind, level;
   for (const NearRival& one : near) {
-    names.push_back(fmt::format("{} ({:.1f} mm; chi\u00b2 {:.0f} behind)",
-                                name_in_words(one.finding->effect),
-                                kMillimetres * one.finding->held_out.arrival_rms, one.behind));
+    const std::string legs = fmt::format("{} ({:.1f} mm", name_in_words(one.finding->effect),
+                                         kMillimetres * one.finding->held_out.arrival_rms);
+    if (one.behind < kBehind) {
+      level.push_back(legs + ")");
+    } else {
+      behind.push_back(fmt::format("{}; chi\u00b2 {:.0f} behind)", legs, one.behind));
+    }
   }
-  sentences.push_back(fmt::format(
-      "Within a millimetre of {} on held-out legs: {}. All measurements together speak for {}.",
-      short_name(effect), listed(names), short_name(effect)));
+  shorten(behind);
+  shorten(level);
+  if (!behind.empty()) {
+    sentences.push_back(fmt::format(
+        "Within a millimetre of {} on held-out legs: {}. All measurements together speak for {}.",
+        short_name(effect), listed(behind), short_name(effect)));
+  }
+  if (!level.empty()) {
+    sentences.push_back(fmt::format(
+        "By itself as much as {} explains: {}. The sum of all that was measured decided.",
+        short_name(effect), listed(level)));
+  }
   return sentences;
 }
 

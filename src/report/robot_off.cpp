@@ -13,16 +13,18 @@
 namespace trussmap {
 namespace {
 
-/// What noise alone would leave, and whose noise that is.
+/// What noise alone would leave, whose noise that is, and whether the model explains the rest: with
+/// something unexplained nothing is as good as noise allows.
 struct Floor {
   double rms = 0.0;  ///< m
   std::string noise;
+  bool explained = true;
 };
 
 std::string floor_text(const HeldOut& held_out, const Floor& floor, double beside) {
   if (!(floor.rms > 0.0)) return "";
   const std::string size = distance_text(floor.rms, beside);
-  return as_good_as_noise(held_out, floor.rms)
+  return floor.explained && as_good_as_noise(held_out, floor.rms)
              ? fmt::format(", as good as {} allows ({})", floor.noise, size)
              : fmt::format("; noise alone would leave {}", size);
 }
@@ -119,13 +121,15 @@ std::string in_words(const LocalGain& gain) {
 }
 
 std::vector<std::string> off_sentences(const ModelEvidence& before, const std::string& noise) {
-  return sentences(before, nullptr, "", {before.comparison.held_out.expected_rms, noise});
+  return sentences(
+      before, nullptr, "",
+      {before.comparison.held_out.expected_rms, noise, before.comparison.consistent()});
 }
 
 std::vector<std::string> off_sentences(const ModelEvidence& before, const ModelEvidence& after,
                                        const std::string& with, double floor,
                                        const std::string& noise) {
-  return sentences(before, &after, with, {floor, noise});
+  return sentences(before, &after, with, {floor, noise, after.comparison.consistent()});
 }
 
 }  // namespace trussmap

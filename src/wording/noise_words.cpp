@@ -102,9 +102,7 @@ std::string in_words(const FittedNoise& noise) {
 std::string in_words(const NoiseBudget& budget) {
   if (budget.shares.empty()) return "";
   const NoiseShare& most = budget.shares.front();
-  const bool gyro = std::any_of(budget.shares.begin(), budget.shares.end(),
-                                [](const auto& one) { return begins_with(one.source, "gyro"); });
-  const Remedy remedy = remedy_of(most.source, gyro);
+  const Remedy remedy = remedy_of(most.source, budget.gyro);
   const std::string when =
       budget.horizon == 0.0 ? "at a leg's end" : fmt::format("after {:g} s", budget.horizon);
   return fmt::format("{} {:.0f} % is {}{}; {}", when, 100.0 * most.share, remedy.error,

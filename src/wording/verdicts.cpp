@@ -17,6 +17,12 @@ std::string beyond_noise(double chi2, int dof) {
                      std::sqrt(chi2 / std::max(1, dof)));
 }
 
+/// A verdict, and by how many of the sightings it is one.
+std::string judged(std::string verdict, const UsedSightings& sightings) {
+  const std::string by = in_words(sightings);
+  return by.empty() ? verdict : verdict + "; " + by;
+}
+
 std::string goes_with(const Trend& trend) {
   return trend.against == "all"
              ? fmt::format("the {} error is everywhere alike", trend.kind)
@@ -107,10 +113,20 @@ std::string objection_in_words(const Comparison& result) {
 
 std::string verdict_in_words(const Comparison& result) {
   const bool hardly = result.consistent() && !result.tested();
-  return fmt::format("{}{} {}", verdict_of(result), hardly ? "," : ":", objection_in_words(result));
+  return judged(
+      fmt::format("{}{} {}", verdict_of(result), hardly ? "," : ":", objection_in_words(result)),
+      result.sightings);
 }
 
-std::string verdict_in_words(const Diagnosis& result) {
+std::string in_words(const UsedSightings& sightings) {
+  if (!sightings.thinned()) return "";
+  return fmt::format("judged by {} of {} sightings, one frame in {:g} s", sightings.used,
+                     sightings.all, sightings.every);
+}
+
+namespace {
+
+std::string verdict_of_all(const Diagnosis& result) {
   std::string text(verdict_of(result));
   switch (result.verdict) {
     case Diagnosis::Verdict::missing:
@@ -141,16 +157,23 @@ std::string verdict_in_words(const Diagnosis& result) {
                     probability_text(result.p_value), result.tried);
 }
 
+}  // namespace
+
+std::string verdict_in_words(const Diagnosis& result) {
+  return judged(verdict_of_all(result), result.sightings);
+}
+
 std::string verdict_in_words(const Discovery& result) {
-  const auto added =
-      std::count_if(result.steps.begin(), result.steps.end(),
-                    [](const DiscoveryStep& step) { return step.added.has_value(); });
+  const std::size_t given = result.given.model.effects.size();
+  const std::size_t now = result.found.model.effects.size();
+  const std::size_t added = now > given ? now - given : 0;
   const bool noise = result.last.under && result.last.under->noise.changed();
   const std::string found = added == 0 && noise ? "nothing found but noise that is not as stated"
                             : added == 0        ? "nothing found, the model stays as it is"
                             : added == 1        ? "one effect found"
                                          : fmt::format("{} effects found, one by one", added);
-  return fmt::format("{}: {}; {}", verdict_of(result), found, stop_in_words(result));
+  return judged(fmt::format("{}: {}; {}", verdict_of(result), found, stop_in_words(result)),
+                result.sightings);
 }
 
 std::string in_words(const Finding& finding) {
@@ -160,6 +183,11 @@ std::string in_words(const Finding& finding) {
       "{}: {}; {}{}", name_of(finding.status), effect.name,
       in_words(effect, finding.joint.empty() ? finding.sd : finding.joint_sd),
       finding.implausible ? "; implausibly large: is a unit wrong, or a sensor at fault?" : "");
+}
+
+std::string behind_in_words(const LookAlike& rival) {
+  constexpr double kShows = 0.5;  // of chi^2
+  return rival.behind < kShows ? "" : fmt::format(", its fit {:.0f} behind (chi^2)", rival.behind);
 }
 
 std::string stop_in_words(const Discovery& result) {
@@ -172,6 +200,8 @@ std::string stop_in_words(const Discovery& result) {
         return fmt::format("\"{}\" cannot be fitted beside what the model has", stopped.effect);
       case StopReason::predicts_worse:
         return fmt::format("\"{}\" fits these legs, but predicts others worse", stopped.effect);
+      case StopReason::told_to:
+        return std::string("told to stop");
       case StopReason::nothing_significant:
         break;
     }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/candidates.hpp"
 #include "criticism/comparison.hpp"
-#include "criticism/diagnosis.hpp"
 #include "criticism/effect_evidence.hpp"
+#include "criticism/judged_rows.hpp"
 #include "criticism/look_alikes.hpp"
 #include "criticism/score_test.hpp"
 #include "fit/fit_state.hpp"
@@ -50,12 +50,30 @@ struct TriedModel::Tried {
     const ModelFit first = fit_model(*recordings, model, options.fit);
     say(progress, TryingStage::searching);
     run = run_diagnosis(*recordings, first, model.noise, options);
+    look_at(first, progress);
+  }
+
+  Tried(PreparedRecordings rows, const Model& model, const DiagnoseOptions& how,
+        const std::function<void(TryingStage)>& progress)
+      : options(how) {
+    say(progress, TryingStage::fitting);
+    ModelFit first = fit_model(rows.recordings, model, options.fit);
+    say(progress, TryingStage::searching);
+    JudgedRun judged = judged_run(std::move(rows), std::move(first), model.noise, options);
+    run = std::move(judged.run);
+    recordings =
+        std::make_shared<const std::vector<DrivenRecording>>(std::move(judged.rows.recordings));
+    look_at(judged.fit, progress);
+  }
+
+  void look_at(const ModelFit& first, const std::function<void(TryingStage)>& progress) {
     fit = judged_fit(run.result, first);
     say(progress, TryingStage::comparing);
     tests.emplace(*fit.state);
     legs.emplace(*recordings, fit, options.legs);
     comparison = compare(*recordings, fit, {options.fit, options.legs, options.level}, *tests,
                          {run.result.missing, legs->metrics()});
+    comparison.sightings = run.result.sightings;
     sizes = sizes_of(run.result, tests->context());
     map = fitted_map(fit);
     budget = noise_budget(*recordings, fit.model);
@@ -87,6 +105,10 @@ TriedModel::TriedModel(std::shared_ptr<const std::vector<DrivenRecording>> recor
                        const Model& model, const DiagnoseOptions& options,
                        const std::function<void(TryingStage)>& progress)
     : tried_(std::make_shared<const Tried>(std::move(recordings), model, options, progress)) {}
+
+TriedModel::TriedModel(PreparedRecordings rows, const Model& model, const DiagnoseOptions& options,
+                       const std::function<void(TryingStage)>& progress)
+    : tried_(std::make_shared<const Tried>(std::move(rows), model, options, progress)) {}
 
 const std::vector<DrivenRecording>& TriedModel::recordings() const {
   return *tried_->recordings;

@@ -41,6 +41,12 @@ void put_figures(WorkbenchStep& step, const TriedModel& model) {
       std::ranges::count_if(model.legs(), [](const TriedLeg& leg) { return leg.excluded; }));
 }
 
+PreparedRecordings all_of(std::vector<DrivenRecording> recordings) {
+  PreparedRecordings rows;
+  rows.recordings = std::move(recordings);
+  return rows;
+}
+
 /// Where the drive of a recording is over, nothing can be excluded.
 void clamp_to(const MotionRows& drive, std::vector<TimeSpan>& spans) {
   for (TimeSpan& span : spans) {
@@ -60,7 +66,17 @@ std::vector<std::size_t> way_to(const WorkbenchLog& log, std::size_t step) {
 
 Workbench::Workbench(std::vector<DrivenRecording> recordings, const Model& model,
                      const DiagnoseOptions& options, const WorkbenchWatch& watch)
-    : recordings_(std::make_shared<const std::vector<DrivenRecording>>(std::move(recordings))),
+    : Workbench(all_of(std::move(recordings)), model, options, watch) {}
+
+Workbench::Workbench(std::vector<DrivenRecording> recordings, WorkbenchLog log,
+                     const DiagnoseOptions& options, const WorkbenchWatch& watch)
+    : Workbench(all_of(std::move(recordings)), std::move(log), options, watch) {}
+
+Workbench::Workbench(PreparedRecordings rows, const Model& model, const DiagnoseOptions& options,
+                     const WorkbenchWatch& watch)
+    : rows_(std::move(rows)),
+      recordings_(
+          std::make_shared<const std::vector<DrivenRecording>>(std::move(rows_.recordings))),
       options_(options) {
   options_.fit.fit_effects = true;
   WorkbenchStep given;
@@ -69,9 +85,11 @@ Workbench::Workbench(std::vector<DrivenRecording> recordings, const Model& model
   take(std::move(given), watch);
 }
 
-Workbench::Workbench(std::vector<DrivenRecording> recordings, WorkbenchLog log,
-                     const DiagnoseOptions& options, const WorkbenchWatch& watch)
-    : recordings_(std::make_shared<const std::vector<DrivenRecording>>(std::move(recordings))),
+Workbench::Workbench(PreparedRecordings rows, WorkbenchLog log, const DiagnoseOptions& options,
+                     const WorkbenchWatch& watch)
+    : rows_(std::move(rows)),
+      recordings_(
+          std::make_shared<const std::vector<DrivenRecording>>(std::move(rows_.recordings))),
       options_(options),
       log_(std::move(log)) {
   check(log_);
@@ -89,14 +107,20 @@ TriedModel Workbench::tried(const WorkbenchLog& log, const WorkbenchWatch& watch
   if (watch.provisional && options.estimate_noise) {
     DiagnoseOptions as_stated = options;
     as_stated.estimate_noise = false;
-    TriedModel first(recordings_, model, as_stated, watch.progress);
+    TriedModel first = tried(model, as_stated, watch);
     const bool fits = first.fit().p_value > kSignificance;
     if (fits && first.diagnosis().verdict != Diagnosis::Verdict::missing) return first;
     WorkbenchLog with = log;
     put_figures(with.steps[with.at], first);
     watch.provisional(first, with);
   }
-  return {recordings_, model, options, watch.progress};
+  return tried(model, options, watch);
+}
+
+TriedModel Workbench::tried(const Model& model, const DiagnoseOptions& options,
+                            const WorkbenchWatch& watch) const {
+  if (!rows_.whole) return {recordings_, model, options, watch.progress};
+  return {prepared_again(rows_, model), model, options, watch.progress};
 }
 
 /// Nothing is changed until the model has been tried.
