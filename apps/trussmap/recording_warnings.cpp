@@ -13,7 +13,7 @@ namespace trussmap::app {
 
 void warn_of_mistakes(const std::vector<Recording>& recordings, const Model& model,
                       const std::string& model_file) {
-  const std::vector<CheckFinding> findings = check_recordings(recordings, &model, model_file);
+  const std::vector<CheckFinding> findings = check_read_recordings(recordings, &model, model_file);
   if (findings.empty()) return;
   // What progress has written goes first.
   if (can_rewrite_lines(stderr)) fmt::print(stderr, "\r\033[K");

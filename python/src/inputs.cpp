@@ -150,7 +150,7 @@ Prepared prepared(const Given& given, const UseOptions& use) {
   check_excluded(input.recordings, use.fit);
   Prepared result;
   for (const CheckFinding& one :
-       check_recordings(input.recordings, &input.model, input.model_name)) {
+       check_read_recordings(input.recordings, &input.model, input.model_name)) {
     result.mistakes.push_back(in_words(one));
   }
   PreparedRecordings ready = prepare_recordings(
