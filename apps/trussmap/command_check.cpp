@@ -8,7 +8,9 @@
 #include "model_recordings.hpp"
 #include "terminal.hpp"
 #include "trussmap/check.hpp"
+#include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
 #include "trussmap/texts.hpp"
 #include "trussmap/write_files.hpp"
 
@@ -30,6 +32,7 @@ struct CheckCommand {
   std::string model;
   std::string json;
   std::string edge2 = kEdge2ByName;
+  std::string mend;
 };
 
 std::string json_text(const std::vector<CheckFinding>& findings) {
@@ -44,11 +47,28 @@ std::string json_text(const std::vector<CheckFinding>& findings) {
   return ordered_json{{"findings", list}}.dump(2) + "\n";
 }
 
+std::optional<Model> model_of(const CheckCommand& options,
+                              const std::vector<Recording>& recordings) {
+  if (options.model.empty()) return std::nullopt;
+  return read_model(options.model, recordings);
+}
+
+/// The recording as it should be, in a folder of its own.
+void write_mended(const CheckCommand& options) {
+  const std::vector<Recording> recordings = read_recordings(options.inputs);
+  const std::optional<Model> model = model_of(options, recordings);
+  const MendedRecording whole = mended(recordings.front(), model ? &*model : nullptr);
+  std::string comment = "mended by trussmap check";
+  for (const std::string& one : whole.notes) comment += "\n" + one;
+  write_recording(options.mend, whole.recording, comment);
+  for (const std::string& one : whole.notes) fmt::print("mended: {}\n", one);
+  fmt::print("{}written: {}\n", whole.notes.empty() ? "nothing to mend; " : "", options.mend);
+}
+
 std::vector<CheckFinding> findings_of_recordings(const CheckCommand& options) {
   const std::vector<Recording> recordings = read_recordings(options.inputs);
-  std::optional<Model> model;
-  if (!options.model.empty()) model = read_model(options.model, recordings);
-  return check_recordings(recordings, model ? &*model : nullptr, options.model);
+  const std::optional<Model> model = model_of(options, recordings);
+  return check_read_recordings(recordings, model ? &*model : nullptr, options.model);
 }
 
 std::vector<CheckFinding> findings_of_graphs(const CheckCommand& options) {
@@ -79,10 +99,14 @@ void run_check(const CheckCommand& options, bool edge2_given) {
   if (edge2_given && !graphs) {
     throw UsageError("--edge2 is given with recordings, expected with pose graphs: files");
   }
+  if (!options.mend.empty() && (graphs || options.inputs.size() != 1)) {
+    throw UsageError("--mend is given, expected with one recording: a folder");
+  }
   const std::vector<CheckFinding> findings =
       graphs ? findings_of_graphs(options) : findings_of_recordings(options);
   if (!options.json.empty()) write_files({{options.json, json_text(findings)}});
   fmt::print("{}", check_text(findings, style_of(stdout)));
+  if (!options.mend.empty()) write_mended(options);
   if (!findings.empty()) throw AnswerIsNo();
 }
 
@@ -110,6 +134,11 @@ void setup_check(const Command& app) {
       .type_name("FILE");
   command.add_option("--json", options->json, "Write the findings as JSON").type_name("FILE");
   add_edge2(command, options->edge2);
+  command
+      .add_option("--mend", options->mend,
+                  "Write the recording without what can be put right by itself: counters that were "
+                  "wrong in some samples, rows that stand twice, a clock that was set")
+      .type_name("DIR");
   command.footer(
       "A line per finding: file, columns, what it is and what shows it, and below it the remedy.\n"
       "Exit status 0 where nothing is found, 1 where something is. The other commands print the\n"

@@ -21,7 +21,7 @@ void print_warnings(const std::vector<CheckFinding>& findings) {
 
 void warn_of_mistakes(const std::vector<Recording>& recordings, const Model& model,
                       const std::string& model_file) {
-  print_warnings(check_recordings(recordings, &model, model_file));
+  print_warnings(check_read_recordings(recordings, &model, model_file));
 }
 
 }  // namespace trussmap::app

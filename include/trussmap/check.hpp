@@ -10,6 +10,8 @@
 //   survey     from landmark to landmark   against the way driven, and against views of both
 //   truth      motion and heading          against the wheels
 //   gyro, fixes   turns, corners           against the wheels
+//   ranges     places by surveyed beacons  against the wheels
+//   times      of each file                against the drive's, and what robots do in a row
 //
 // Of a drive with other wheels than two, the body's motion by its columns stands for the wheels,
 // and mistakes with single columns are looked for: signs, order, a steering angle in degrees.
@@ -50,6 +52,23 @@ struct CheckFinding {
 [[nodiscard]] std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordings,
                                                          const Model* model = nullptr,
                                                          const std::string& model_file = "");
+
+/// The same, and of the files of recordings that were read from the folders they are named after:
+/// a last row that was cut off. InputError where one has changed since and can no longer be read.
+[[nodiscard]] std::vector<CheckFinding> check_read_recordings(
+    const std::vector<Recording>& recordings, const Model* model = nullptr,
+    const std::string& model_file = "");
+
+struct MendedRecording {
+  Recording recording;
+  std::vector<std::string> notes;  ///< what was put right, a line each
+};
+
+/// A recording as read, without what check_recordings names and can be put right by itself: of a
+/// counter that was wrong in some samples the two rows share what they travel together, rows that
+/// stand twice stand once, later times count on where the clock was set. `model` where it names the
+/// columns that are wheels; throws as with_wheels does.
+[[nodiscard]] MendedRecording mended(Recording recording, const Model* model = nullptr);
 
 /// What check_graph and check_graph_file can find.
 [[nodiscard]] const std::vector<std::string>& check_graph_kinds();

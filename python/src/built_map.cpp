@@ -47,7 +47,7 @@ MapResult run_build_map(const py::object& recordings, const py::object& model,
     told.next();
     Read input = read(given);
     for (const CheckFinding& one :
-         check_recordings(input.recordings, &input.model, input.model_name)) {
+         check_read_recordings(input.recordings, &input.model, input.model_name)) {
       result.mistakes.push_back(in_words(one));
     }
     told.next();

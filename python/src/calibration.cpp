@@ -59,7 +59,7 @@ CalibrationResult run_calibrate(const py::object& recordings, const py::object& 
     told.next();
     Read input = read(given);
     for (const CheckFinding& one :
-         check_recordings(input.recordings, &input.model, input.model_name)) {
+         check_read_recordings(input.recordings, &input.model, input.model_name)) {
       result.mistakes.push_back(in_words(one));
     }
     result.robot = input.model.robot;

@@ -22,8 +22,8 @@ CheckResult run_check(const py::object& recordings, const py::object& model) {
   const bool has_model = !model.is_none();
   return unlocked([&] {
     const Read input = read(given);
-    return CheckResult{check_recordings(input.recordings, has_model ? &input.model : nullptr,
-                                        has_model ? input.model_name : "")};
+    return CheckResult{check_read_recordings(input.recordings, has_model ? &input.model : nullptr,
+                                             has_model ? input.model_name : "")};
   });
 }
 

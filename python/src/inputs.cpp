@@ -155,7 +155,7 @@ Prepared prepared(const Given& given, const UseOptions& use) {
   check_excluded(input.recordings, use.fit);
   Prepared result;
   for (const CheckFinding& one :
-       check_recordings(input.recordings, &input.model, input.model_name)) {
+       check_read_recordings(input.recordings, &input.model, input.model_name)) {
     result.mistakes.push_back(in_words(one));
   }
   result.rows = std::make_shared<PreparedRecordings>(

@@ -39,7 +39,8 @@ std::string explanation(const SurveyComparison& found, const CommonLandmarks& co
   std::vector<Vector2> mirrored = common.surveyed;
   for (Vector2& one : mirrored) one.y() = -one.y();
   if (align_rigidly(common.in_map, mirrored).rms < mended) {
-    return "; it fits the mirrored survey: are x and y exchanged there, or has one the wrong sign?";
+    return "; it fits the mirrored survey: are x and y exchanged there, has one the wrong sign, or "
+           "are the left and the right wheel exchanged?";
   }
   if (found.similarity.rms < mended) {
     const double factor = found.similarity.scale;

@@ -207,8 +207,9 @@ struct Turns {
   TurnAgreement compass;
   TurnAgreement gyro;
   TurnAgreement views;
-  int fixes = 0;  ///< sign
-  int yaws = 0;   ///< sign
+  int fixes = 0;   ///< sign
+  int ranges = 0;  ///< sign, to surveyed landmarks
+  int yaws = 0;    ///< sign
 };
 
 /// What each pair of quantities says of the other's turns, and which of them has to be wrong.
@@ -224,6 +225,8 @@ void check_turns(Checked& checked, const Turns& turns, const SurveyAgreement& su
             "the landmarks' yaws turn with the robot, not against it");
   signs.add(Turning::wheels, Turning::survey, surveyed.by_way,
             "the survey's corners turn against the wheels");
+  signs.add(Turning::wheels, Turning::survey, turns.ranges,
+            "the places that ranges to surveyed landmarks give turn against the wheels");
   signs.add(Turning::bearings, Turning::survey, surveyed.by_views,
             "the survey's corners turn against what is seen");
   signs.add(Turning::wheels, Turning::fixes, turns.fixes,
@@ -261,6 +264,8 @@ void check_contradicted_wheels(Checked& checked, const TurnAgreement& turns,
 TurnAgreement check_recording(Checked& checked) {
   const DrivenRecording& recording = checked.recording;
   check_names(checked);
+  check_case(checked);
+  check_repeats(checked);
   check_drive_values(checked);
   check_bearing_unit(checked);
   check_yaw_units(checked);
@@ -276,7 +281,10 @@ TurnAgreement check_recording(Checked& checked) {
   }
   if (!checked.wheelbase_known) return turns;
   const Track track(recording.drive, checked.wheelbase);
-  const SurveyAgreement surveyed = survey_agreement(checked, track);
+  check_no_travel(checked, track);
+  check_no_turning(checked, track);
+  SurveyAgreement surveyed = survey_agreement(checked, track);
+  settle_by_places(checked, track, surveyed);
   if (checked.wheels_wrong()) {  // nothing is to be compared with them
     check_survey(checked, track, {}, false);
     return turns;
@@ -291,9 +299,11 @@ TurnAgreement check_recording(Checked& checked) {
   check_truth(checked, track, truth);
   const std::size_t before = checked.findings.size();
   check_turns(checked,
-              {turns, gyro, views, sign_of_fixes(checked, track), yaws_sign(checked, track)},
+              {turns, gyro, views, sign_of_fixes(checked, track), sign_of_ranges(checked, track),
+               yaws_sign(checked, track)},
               surveyed, truth);
   if (checked.findings.size() > before) return turns;
+  check_constant_columns(checked, track);
   if (!checked.broken && !checked.wrong.contains("x") && !checked.wrong.contains("range")) {
     check_survey_points(checked, surveyed);
   }
@@ -374,9 +384,10 @@ std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordi
   const bool by_columns = model != nullptr && !model->robot.columns.empty();
   std::vector<DrivenRecording> all;
   all.reserve(recordings.size());
-  for (const Recording& one : recordings) {
-    all.push_back(by_columns ? by_its_columns(one, model->robot) : with_wheels(one, Robot()));
-  }
+  const auto taken = [&](const Recording& one) {
+    return by_columns ? by_its_columns(one, model->robot) : with_wheels(one, Robot());
+  };
+  for (const Recording& one : recordings) all.push_back(taken(one));
   for (const DrivenRecording& one : all) require_well_formed(one);
   if (model != nullptr && !model->robot.wheelbase_stated) {
     findings.push_back(
@@ -386,6 +397,12 @@ std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordi
   }
   bool said = false;
   for (std::size_t k = 0; k < all.size(); ++k) {
+    const std::vector<CounterJump> glitches = counter_glitches(all[k].drive);
+    if (!glitches.empty()) {  // the rest is checked without
+      Checked with_glitches{all[k], findings};
+      check_glitches(with_glitches, glitches);
+      all[k] = taken(without_glitches(recordings[k], glitches, names_of_wheels(all[k].drive)));
+    }
     Checked checked{all[k], findings};
     checked.wheelbase_known = model != nullptr && model->robot.wheelbase_stated;
     checked.wheelbase = model != nullptr ? model->robot.wheelbase : Robot().wheelbase;

@@ -13,9 +13,6 @@ namespace {
 constexpr double kFastest = 10.0;     // m/s that a robot drives
 constexpr double kFastestCar = 60.0;  // m/s
 constexpr double kSlowest = 0.004;    // m/s
-constexpr double kShortTravel = 0.5;  // m in a row that has milliseconds for seconds
-constexpr double kOrdinary = 0.02;    // m/s once they are taken for what they are
-constexpr double kLongestRow = 2.0;   // s
 constexpr double kSpike = 10.0;       // times the speed that 99 of 100 rows stay below
 constexpr double kSpikeTravel = 0.5;  // m
 
@@ -64,13 +61,6 @@ void check_units(Checked& checked, const Rows& rows) {
                        rows.whole ? ", and all travels are whole numbers" : "",
                        ": travels look like ", unit),
                 rows.whole ? "multiply them by the metres per tick" : "convert them to metres");
-  } else if (speed < kSlowest && rows.duration > kLongestRow &&
-             speed * rows.duration < kShortTravel && 1e3 * speed > kOrdinary) {
-    checked.add("drive.csv", "t", "time unit",
-                joined("a row lasts ", figure(rows.duration, "s"), " and the robot drives at ",
-                       figure(speed, "m/s"), " (medians): times look like ",
-                       rows.duration > 2e3 ? "microseconds" : "milliseconds"),
-                "convert all times to seconds, of sightings and truth too");
   }
 }
 
@@ -112,9 +102,11 @@ void check_drive_values(Checked& checked) {
                 "no row has any travel", "record a drive, or look at the columns' source");
     return;
   }
+  const UsualRow usual{rows.duration, rows.speed(0.5)};
   check_units(checked, rows);
+  check_clocks(checked, usual);
   check_spikes(checked, rows);
-  check_gaps(checked, {rows.duration, rows.speed(0.5)});
+  check_gaps(checked, usual);
   if (checked.recording.drive.of_two_wheels()) check_still_wheels(checked);
 }
 

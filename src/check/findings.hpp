@@ -4,6 +4,7 @@
 // What each part of a check looks at, and what it adds to the list.
 #pragma once
 
+#include "check/counter_jumps.hpp"
 #include "check/survey_legs.hpp"
 #include "check/track.hpp"
 #include "trussmap/check.hpp"
@@ -55,6 +56,14 @@ struct UsualRow {
 };
 /// Rows that are missing, but for those of a robot that stood still.
 void check_gaps(Checked& checked, const UsualRow& usual);
+/// Rows in which the clock was set, counted from 0; none where there are so many that it is a
+/// logger's that sleeps.
+[[nodiscard]] std::vector<std::size_t> clock_jumps(const DriveColumns& drive,
+                                                   const UsualRow& usual);
+/// Times in another unit, a clock that was set, files with other times than the drive's.
+void check_clocks(Checked& checked, const UsualRow& usual);
+/// Counters that were wrong for some samples.
+void check_glitches(Checked& checked, const std::vector<CounterJump>& jumps);
 
 /// A wheel that stands still for so long that no turn about it is meant, or that nothing shows one.
 void check_still_wheels(Checked& checked);
@@ -75,6 +84,16 @@ void add_lone_wheel(Checked& checked, WheelMistake mistake, const std::string& e
 
 /// Blanks in names of landmarks.
 void check_names(Checked& checked);
+/// Names that differ in upper and lower case alone.
+void check_case(Checked& checked);
+/// Rows of sightings and loops that stand twice.
+void check_repeats(Checked& checked);
+/// Columns of one number, which the robot's motion would have to change.
+void check_constant_columns(Checked& checked, const Track& track);
+/// Wheels that turn the robot, but never travel.
+void check_no_travel(Checked& checked, const Track& track);
+/// Wheels that travel, but never turn it.
+void check_no_turning(Checked& checked, const Track& track);
 /// One name at two places. Places are the truth's where that is trusted, else the track's.
 void check_two_places(Checked& checked, const Track& track, bool by_truth);
 
@@ -131,8 +150,13 @@ struct SurveyAgreement {
   std::vector<SurveyLeg> views;
 };
 [[nodiscard]] SurveyAgreement survey_agreement(const Checked& checked, const Track& track);
+/// Where corners do not tell: by the stops' places, whatever the wheels' scale and the size of
+/// their turns.
+void settle_by_places(const Checked& checked, const Track& track, SurveyAgreement& agreement);
 /// Of the fixes' corners with those of the way.
 [[nodiscard]] int sign_of_fixes(const Checked& checked, const Track& track);
+/// Of the places that ranges to surveyed landmarks give.
+[[nodiscard]] int sign_of_ranges(const Checked& checked, const Track& track);
 /// What of it is wrong by itself: names, spread, units; `compass`: whether its turns agree.
 void check_survey(Checked& checked, const Track& track, const SurveyAgreement& agreement,
                   bool compass);

@@ -141,10 +141,12 @@ void check_gaps(Checked& checked, const UsualRow& usual) {
   const MotionRows& drive = checked.recording.drive;
   const double longest = std::max(kLongGap, kGapRows * usual.duration);
   const std::vector<double> path = way_of(drive);
+  const std::vector<std::size_t> jumps = clock_jumps(drive, usual);
   std::vector<std::size_t> gaps;
   for (std::size_t row = 1; row < drive.rows(); ++row) {
     const double duration = drive.duration(row);
     if (duration <= longest) continue;
+    if (std::find(jumps.begin(), jumps.end(), row) != jumps.end()) continue;
     // Travels that a long row has summed up are no gap.
     if (larger_travel(drive, row) > kSummedUp * usual.speed * duration) continue;
     if (!stands_still_over(checked, path, row, usual)) gaps.push_back(row);

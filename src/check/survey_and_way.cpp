@@ -5,7 +5,9 @@
 // axes) and against views of both at one time (in the robot's). Lengths tell a unit; what matters
 // of the directions is how they change from one to the next, alike or mirrored.
 #include "check/findings.hpp"
+#include "check/places.hpp"
 #include "check/survey_legs.hpp"
+#include "check/turn_factor.hpp"
 #include "geometry/units.hpp"
 #include "statistics/median.hpp"
 #include "text/number_text.hpp"
@@ -165,6 +167,11 @@ void check_units(Checked& checked, const SurveyAgreement& agreement) {
   }
 }
 
+/// Whatever the wheels' scale and the size of their turns.
+int sign_of_places(const Checked& checked, const Track& track, const PlacesSeen& places) {
+  return turn_sign(checked.recording.drive, checked.wheelbase, track, places);
+}
+
 }  // namespace
 
 SurveyAgreement survey_agreement(const Checked& checked, const Track& track) {
@@ -190,11 +197,23 @@ SurveyAgreement survey_agreement(const Checked& checked, const Track& track) {
   return result;
 }
 
+void settle_by_places(const Checked& checked, const Track& track, SurveyAgreement& agreement) {
+  if (agreement.by_way != 0 || checked.wrong.contains("x")) return;
+  agreement.by_way = sign_of_places(checked, track, places_by_stops(checked.recording));
+  if (agreement.by_way != 0) agreement.contradicts = agreement.unsigned_wheels = false;
+}
+
 int sign_of_fixes(const Checked& checked, const Track& track) {
   if (checked.wrong.contains("fix x")) return 0;
   const std::vector<SurveyLeg> legs = legs_by_fixes(checked.recording, track);
   const double ratio = ratio_of(legs);
-  return ratio > 0.0 ? sign_of(legs, ratio).value : 0;
+  const int sign = ratio > 0.0 ? sign_of(legs, ratio).value : 0;
+  return sign != 0 ? sign : sign_of_places(checked, track, places_by_fixes(checked.recording));
+}
+
+int sign_of_ranges(const Checked& checked, const Track& track) {
+  if (checked.wrong.contains("x") || checked.wrong.contains("range")) return 0;
+  return sign_of_places(checked, track, places_by_ranges(checked.recording));
 }
 
 void check_survey(Checked& checked, const Track& track, const SurveyAgreement& agreement,

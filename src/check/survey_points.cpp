@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Surveyed points that lie elsewhere: legs to and from them are not what was driven or seen, laid
-// over the survey by the legs before and after. The landmark with most such legs is taken out,
-// until the others agree.
+// over the survey by the legs before and after, and in its scale where that suits more of them. The
+// landmark with most such legs is taken out, until the others agree.
 #include "check/findings.hpp"
 #include "check/survey_legs.hpp"
 #include "text/number_text.hpp"
@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -92,6 +93,22 @@ bool are_right(const std::vector<SurveyLeg>& legs, By by) {
   return wrong_of(legs, by) <= kHardlyAny * static_cast<double>(legs.size());
 }
 
+/// Of so many: where few are left, they agree with whatever is true of them.
+std::size_t most_points(std::size_t landmarks) {
+  constexpr std::size_t kHandful = 8;
+  const auto share = static_cast<std::size_t>(kMostPoints * static_cast<double>(landmarks));
+  return landmarks < kHandful ? std::size_t{1} : std::max<std::size_t>(2, share);
+}
+
+/// Of the legs as driven and in the survey's scale, those that fewer are wrong of.
+std::vector<SurveyLeg> in_better_scale(std::vector<SurveyLeg> legs, double ratio) {
+  constexpr double kFar = 3.0;  // factor: no wheel's
+  if (!(ratio > 0.0) || std::abs(std::log(ratio)) > std::log(kFar)) return legs;
+  std::vector<SurveyLeg> scaled = legs;
+  for (SurveyLeg& one : scaled) one.measured *= ratio;
+  return wrong_of(scaled, By::vector) < wrong_of(legs, By::vector) ? scaled : legs;
+}
+
 /// Nothing where they do not explain what is wrong.
 std::vector<std::string_view> wrong_points(std::vector<SurveyLeg> legs, std::size_t landmarks,
                                            By by) {
@@ -104,10 +121,7 @@ std::vector<std::string_view> wrong_points(std::vector<SurveyLeg> legs, std::siz
         [](const auto& a, const auto& b) { return a.second.wrong < b.second.wrong; });
     const Count& most = worst->second;
     const bool explains = most.wrong >= kFewestWrong && most.wrong >= kMostly * most.all;
-    if (!explains || static_cast<double>(points.size() + 1) >
-                         std::max(2.0, kMostPoints * static_cast<double>(landmarks))) {
-      return {};
-    }
+    if (!explains || points.size() + 1 > most_points(landmarks)) return {};
     points.push_back(worst->first);
     std::erase_if(legs, [&](const SurveyLeg& leg) { return touches(leg, points.back()); });
   }
@@ -164,6 +178,7 @@ void check_survey_points(Checked& checked, const SurveyAgreement& agreement) {
   constexpr std::size_t kAbout = 12;
   constexpr std::size_t kAboutOthers = 4;
   legs = turned_onto_survey(legs, checked.recording.drive.wheels.empty() ? kAbout : kAboutOthers);
+  legs = in_better_scale(std::move(legs), driven ? agreement.way_ratio : agreement.views_ratio);
   const std::string legs_words = joined(" are not what was ", driven ? "driven" : "seen");
   for (const By by : {By::vector, By::length}) {
     if (are_right(legs, by)) continue;

@@ -7,6 +7,7 @@
 #include "estimation/noise_states.hpp"
 #include "estimation/session_instants.hpp"
 #include "parallel/parallel_for.hpp"
+#include "recording/repeated_rows.hpp"
 #include "recording/time_spans.hpp"
 #include "text/number_text.hpp"
 
@@ -96,9 +97,10 @@ int numbered(std::map<Key, int>& numbers, const Key& key, std::vector<Named>& al
 GrowingProblem with_sightings(GrowingProblem growing, const std::vector<Sighting>& sightings,
                               const SessionPoses& poses, const Noise& noise) {
   RecordingProblem& problem = growing.problem;
+  const std::vector<bool> repeated = repeated_rows(sightings);  // one measurement each
   for (std::size_t k = 0; k < sightings.size(); ++k) {
     const auto pose = poses.at.find(sightings[k].t);
-    if (pose == poses.at.end()) continue;
+    if (pose == poses.at.end() || repeated[k]) continue;
     const auto add = [&](Measurement one, int to) {
       one.from = pose->second;
       one.to = to;
@@ -132,10 +134,11 @@ RecordingProblem with_places(RecordingProblem problem, const DrivenRecording& re
   for (const std::size_t k : used.fixes) {
     add(kinds::measured_by(recording.fixes[k], noise), recording.fixes[k].t, k);
   }
+  const std::vector<bool> repeated = repeated_rows(recording.loops);
   for (std::size_t k = 0; used.loops && k < recording.loops.size(); ++k) {
     const Loop& loop = recording.loops[k];
     const auto to = poses.at.find(loop.t2);
-    if (to == poses.at.end()) continue;
+    if (to == poses.at.end() || repeated[k]) continue;
     Measurement one = kinds::measured_by(loop, noise);
     one.to = to->second;
     add(one, loop.t, k);

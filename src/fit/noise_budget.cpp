@@ -123,13 +123,28 @@ struct Stretch {
   double to = 0.0;
 };
 
+/// Half a horizon apart. Of more than a few per row, for a clock that was set or counts another
+/// unit, those that hold the end of a row.
 std::vector<Stretch> stretches(const MotionRows& drive, double horizon) {
+  constexpr double kPerRow = 4.0;
   std::vector<Stretch> result;
-  const double length = drive.t.back() - drive.start();
-  const auto count = static_cast<std::size_t>(std::max(0.0, 2.0 * (length / horizon - 1.0) + 1.0));
-  for (std::size_t k = 0; k < count; ++k) {
-    const double from = drive.start() + 0.5 * horizon * static_cast<double>(k);
+  const double apart = 0.5 * horizon;
+  const double count = std::floor(2.0 * ((drive.t.back() - drive.start()) / horizon - 1.0) + 1.0);
+  const auto add = [&](double k) {
+    const double from = drive.start() + apart * k;
     result.push_back({from, from + horizon});
+  };
+  if (count <= kPerRow * static_cast<double>(drive.rows())) {
+    for (double k = 0.0; k < count; k += 1.0) add(k);
+    return result;
+  }
+  double next = 0.0;
+  for (const double t : drive.t) {
+    const double last = std::floor((t - drive.start()) / apart);
+    for (double k = std::max(next, last - 1.0); k <= std::min(last, count - 1.0); k += 1.0) {
+      add(k);
+      next = k + 1.0;
+    }
   }
   return result;
 }

@@ -46,6 +46,32 @@ constexpr double kLargestYawRate = 1e3;     // rad/s: a gyro in degrees reads le
 constexpr double kLargestPosition = 1e9;    // m
 constexpr double kLargestCovariate = 1e50;  // in whatever unit
 
+/// "milliseconds", ..., with how many make a second.
+struct TimeUnit {
+  const char* name;
+  double per_second;
+};
+constexpr TimeUnit kTimeUnits[] = {
+    {"milliseconds", 1e3}, {"microseconds", 1e6}, {"nanoseconds", 1e9}};
+
+/// A time [s]. What is beyond all clocks looks like the time since 1970 in another unit.
+double time_in(const CsvReader& csv, int column) {
+  constexpr double kFirst = 5e8;  // s since 1970: what clocks of robots show
+  constexpr double kLast = 5e9;
+  const double t = csv.number(column);
+  if (std::abs(t) <= kLargestTime) return t;
+  std::string looks;
+  for (const TimeUnit& one : kTimeUnits) {
+    const double seconds = t / one.per_second;
+    if (seconds > kFirst && seconds < kLast) {
+      looks = fmt::format(": it looks like {} since 1970, not seconds", one.name);
+    }
+  }
+  csv.fail(fmt::format("column {} is \"{}\", expected a number of at most {} in size{}",
+                       csv.columns()[idx(column)], csv.field(column), csv_number(kLargestTime),
+                       looks));
+}
+
 bool is_name(std::string_view text) {
   const auto word = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
@@ -112,7 +138,7 @@ Drive read_drive(const fs::path& file) {
     covariate_columns.push_back(column);
   }
   while (csv.next()) {
-    const double now = csv.number(t, kLargestTime);
+    const double now = time_in(csv, t);
     if (!drive.t.empty()) require_forward(csv, drive.t.back(), now, false);
     drive.t.push_back(now);
     if (left >= 0) drive.left.push_back(csv.number(left, kLargestTravel));
@@ -138,8 +164,18 @@ Drive read_drive(const fs::path& file) {
 void require_inside(const CsvReader& csv, const Drive& drive, double t, const char* what) {
   const double slack = clock_slack(drive);
   if (t >= drive.start() - slack && t <= drive.t.back() + slack) return;
+  constexpr double kFarOut = 10.0;  // times the drive's length
+  std::string looks;
+  for (const TimeUnit& one : kTimeUnits) {
+    const double seconds = t / one.per_second;
+    const bool inside = seconds >= drive.start() && seconds <= drive.t.back();
+    if (looks.empty() && inside &&
+        t > drive.t.back() + kFarOut * (drive.t.back() - drive.start())) {
+      looks = fmt::format(": is it in {}?", one.name);
+    }
+  }
   csv.fail(std::string(what) + csv_number(t) + " is outside the drive, expected " +
-           csv_number(drive.start()) + " to " + csv_number(drive.t.back()));
+           csv_number(drive.start()) + " to " + csv_number(drive.t.back()) + looks);
 }
 
 double sd_or_absent(const CsvReader& csv, int column, double largest, const char* name) {
@@ -163,7 +199,7 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
   std::vector<Sighting> sightings;
   while (csv.next()) {
     Sighting sighting;
-    sighting.t = csv.number(t, kLargestTime);
+    sighting.t = time_in(csv, t);
     sighting.landmark = landmark_name(csv, landmark);
     if (range >= 0) {
       sighting.range = csv.number_or_absent(range, kLargestRange);
@@ -242,7 +278,7 @@ std::vector<TruthRow> read_truth(const fs::path& file) {
   refuse_other_columns(csv, {"t", "x", "y", "heading"});
   std::vector<TruthRow> truth;
   while (csv.next()) {
-    const TruthRow row{csv.number(t, kLargestTime), csv.number(x, kLargestPosition),
+    const TruthRow row{time_in(csv, t), csv.number(x, kLargestPosition),
                        csv.number(y, kLargestPosition), csv.number(heading, kLargestAngle)};
     if (!truth.empty()) require_forward(csv, truth.back().t, row.t, false);
     truth.push_back(row);
@@ -265,7 +301,7 @@ std::vector<Fix> read_fixes(const fs::path& file) {
   std::vector<Fix> fixes;
   while (csv.next()) {
     Fix fix;
-    fix.t = csv.number(t, kLargestTime);
+    fix.t = time_in(csv, t);
     fix.x = csv.number(x, kLargestPosition);
     fix.y = csv.number(y, kLargestPosition);
     fix.sd = sd_or_absent(csv, sd, kLargestPosition, "sd");
@@ -293,8 +329,8 @@ std::vector<Loop> read_loops(const fs::path& file, const Drive& drive) {
   std::vector<Loop> loops;
   while (csv.next()) {
     Loop loop;
-    loop.t = csv.number(t, kLargestTime);
-    loop.t2 = csv.number(t2, kLargestTime);
+    loop.t = time_in(csv, t);
+    loop.t2 = time_in(csv, t2);
     loop.dx = csv.number(dx, kLargestPosition);
     loop.dy = csv.number(dy, kLargestPosition);
     loop.dtheta = csv.number(dtheta, kLargestAngle);

@@ -45,15 +45,33 @@ struct WindowError {
   double squared = 0.0;
 };
 
+/// Times from the first node on, half a horizon apart, that have a node within reach: as many as
+/// there are nodes, however long the clock ran.
+std::vector<double> anchored_starts(const std::vector<double>& nodes, double horizon) {
+  const double apart = 0.5 * horizon;
+  std::vector<double> starts;
+  double next = 0.0;
+  for (const double node : nodes) {
+    const double from = node - nodes.front();
+    for (double k = std::max(next, std::ceil((from - kAnchored) / apart));
+         k * apart <= from + kAnchored; k += 1.0) {
+      starts.push_back(nodes.front() + k * apart);
+      next = k + 1.0;
+    }
+  }
+  return starts;
+}
+
 /// Those of a session whose middle is in a block, by a path that is reckoned with the coefficients
 /// without it.
 void add_windows(const FitState& judge, std::size_t session, const std::vector<double>& nodes,
                  const TimeBlocks& blocks, int block, const SessionPath& reckoned, double horizon,
                  std::vector<WindowError>& windows) {
   const MotionRows& drive = judge.recordings[session].drive;
-  for (double t = nodes.front(); t + horizon <= nodes.back(); t += 0.5 * horizon) {
+  for (const double t : anchored_starts(nodes, horizon)) {
+    if (t + horizon > nodes.back()) break;
     if (blocks.at(static_cast<int>(session), t + 0.5 * horizon) != block) continue;
-    if (!is_anchored(nodes, t) || !is_anchored(nodes, t + horizon)) continue;
+    if (!is_anchored(nodes, t + horizon)) continue;
     const auto& left_out = judge.used.left_out;
     if (!left_out.empty() && overlaps_any({t, t + horizon}, left_out[session])) continue;
     const Vector2 off = driven(drive, reckoned, t, t + horizon) -

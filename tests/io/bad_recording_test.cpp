@@ -136,7 +136,9 @@ const Spoilt kSpoilt[] = {
      "drive.csv:3: column left is \"1e308\", expected a number of at most 1e+06 in size"},
     {"TimeInNanoseconds", "drive.csv", "t,left,right\n1700000000000000000,0,0\n",
      "drive.csv:2: column t is \"1700000000000000000\", expected a number of at most 1e+12 in "
-     "size"},
+     "size: it looks like nanoseconds since 1970, not seconds"},
+    {"SightingsInMilliseconds", "sightings.csv", "t,landmark\n0,A\n200,B\n",
+     "sightings.csv:3: time 200 is outside the drive, expected 0 to 0.3: is it in milliseconds?"},
     {"FarAwaySurvey", "survey.csv", "landmark,x,y\nA,0,-1e10\n",
      "survey.csv:2: column y is \"-1e10\", expected a number of at most 1e+09 in size"},
     {"OutOfRange", "drive.csv", "t,left,right\n0.1,0,1e999\n",
