@@ -16,7 +16,7 @@ void add_tape_options(const Command& command, TapeOptions& options) {
       .add_option("--wheelbase", options.wheelbase,
                   "Distance of the wheels that the robot calculates with [m]; may be left out with "
                   "--model, which has it, and with --simulate (0.34 then)")
-      .check(above_zero());
+      .check(length_of_robot());
   command
       .add_option("--wall-sensors", options.wall_sensors,
                   "RUNS are distances to two walls, by three sensors: where these are (CSV)")
