@@ -9,9 +9,13 @@
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 #include <sys/resource.h>
+#include <system_error>
+#include <unistd.h>
 #include <utility>
 
 #include <fmt/format.h>
@@ -37,6 +41,21 @@ bool same_spans(const std::vector<std::vector<TimeSpan>>& a,
   });
 }
 
+/// Makes it where it is missing: better said now than after the first step.
+void require_writable(const std::filesystem::path& folder) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  std::string probe = (folder / ".trussmap-XXXXXX").string();
+  const int file = failed ? -1 : ::mkstemp(probe.data());
+  if (file < 0) {
+    const std::string why = failed ? failed.message() : std::generic_category().message(errno);
+    throw InputError(folder.string(), 0,
+                     "cannot be written: " + why + ", expected a folder for the steps (--work)");
+  }
+  ::close(file);
+  ::unlink(probe.c_str());
+}
+
 std::optional<WorkbenchLog> log_in(const BenchJob& job) {
   const std::filesystem::path file = job.folder / kLog;
   if (!std::filesystem::exists(file)) return std::nullopt;
@@ -56,6 +75,7 @@ std::optional<WorkbenchLog> log_in(const BenchJob& job) {
 }  // namespace
 
 BenchWork::BenchWork(BenchJob job) : job_(std::move(job)), log_(log_in(job_)) {
+  require_writable(job_.folder);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -147,9 +167,24 @@ void BenchWork::publish(const Workbench& bench) {
   show(bench.now(), log, false);
 }
 
+/// A step that cannot be written is not done: what is in memory is what is on disk.
+void BenchWork::keep(const std::optional<Workbench>& before) {
+  try {
+    publish(*bench_);
+  } catch (...) {
+    if (before) {
+      *bench_ = *before;
+    } else {
+      show(bench_->now(), bench_->log(), false);  // the model as given, which nobody loses
+    }
+    throw;
+  }
+}
+
 void BenchWork::work(const Step& step) {
   std::string failed;
   const std::shared_ptr<const BenchView> before = view();
+  const std::optional<Workbench> kept = bench_ ? std::optional(*bench_) : std::nullopt;
   const auto as_before = [this, &before] {
     if (before && view() != before) show(before->now, before->log, false);
   };
@@ -158,7 +193,7 @@ void BenchWork::work(const Step& step) {
       const StopQuestion question([this] { return stop_.load(); });
       step.run(*bench_, watch());
     }
-    publish(*bench_);
+    keep(kept);
   } catch (const StoppedOnRequest&) {
     as_before();
   } catch (const std::exception& error) {

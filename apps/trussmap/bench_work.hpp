@@ -44,7 +44,8 @@ struct BenchView {
 
 class BenchWork {
  public:
-  /// Reads the log, where there is one, and begins. Throws InputError on a log of other work.
+  /// Reads the log, where there is one, and begins. Throws InputError on a log of other work, or
+  /// where the folder cannot be written.
   explicit BenchWork(BenchJob job);
   /// Ends when the step under way is done.
   ~BenchWork();
@@ -73,6 +74,7 @@ class BenchWork {
   void run();
   void work(const Step& step);
   void publish(const Workbench& bench);
+  void keep(const std::optional<Workbench>& before);
   void show(const TriedModel& now, const WorkbenchLog& log, bool provisional);
   [[nodiscard]] WorkbenchWatch watch();
   [[nodiscard]] double seconds() const;

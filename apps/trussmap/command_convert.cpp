@@ -7,6 +7,8 @@
 #include "convert_odometer.hpp"
 #include "convert_recording.hpp"
 #include "map_yaml_output.hpp"
+#include "private_folder.hpp"
+#include "trussmap/error.hpp"
 #include "trussmap/log_files.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/map_store.hpp"
@@ -196,6 +198,49 @@ constexpr Foreign kForeign[] = {{&is_mrclam, &convert_mrclam},
                                 {&is_line_robot, &convert_line_robot},
                                 {&is_encoder_log, &convert_encoder_log}};
 
+/// The map's text, which its reader takes: what a format cannot hold, a map may.
+std::string readable_map(const LandmarkGraph& map, const fs::path& in, const fs::path& out) {
+  std::string text = format_map(map, out, "");
+  const bool graph = out.extension() == ".g2o";
+  if (!graph && out.extension() != ".graphml") return text;
+  const PrivateFolder folder;
+  const fs::path file = folder.path() / ("map" + out.extension().string());
+  write_file(file, text);
+  try {
+    if (graph) {
+      static_cast<void>(read_g2o(file.string()));
+    } else {
+      static_cast<void>(read_map(file));
+    }
+  } catch (const InputError& error) {
+    throw InputError(
+        in.string(), 0,
+        "makes a map that could not be read again: " + folder.without_it(error.what()));
+  }
+  return text;
+}
+
+void make_store(const LandmarkGraph& map, const fs::path& in, const fs::path& out) {
+  try {
+    static_cast<void>(MapStore::create(out, map, {.method = Method::gauss_markov}));
+  } catch (const std::invalid_argument& error) {
+    throw InputError(in.string(), 0, std::string("makes no map store: ") + error.what());
+  }
+}
+
+void convert_map(const fs::path& in, const fs::path& out, const MapYamlOptions& yaml) {
+  const LandmarkGraph map = is_map_store(in) ? read_map_store(in).map : read_map(in);
+  if (is_map_store(out)) {
+    make_store(map, in, out);
+  } else if (is_yaml_file(out)) {
+    write_map_yaml(map, out, yaml);
+  } else {
+    write_file(out, readable_map(map, in, out));
+  }
+  fmt::print("converted: {} landmarks and {} routes to {}\n", map.landmarks(), map.routes(),
+             out.string());
+}
+
 /// The last name is that of what is written; with --inspect all are read.
 void part_out(ConvertOptions& options) {
   if (options.inspect || !options.out.empty() || options.in.size() < 2) return;
@@ -264,16 +309,7 @@ void run_convert(ConvertOptions options) {
                      "encoders (.txt), or a trial of PHIL's Turtlebot "
                      "(a folder with kobuki_data.csv)");
   }
-  const LandmarkGraph map = is_map_store(in) ? read_map_store(in).map : read_map(in);
-  if (is_map_store(out)) {
-    static_cast<void>(MapStore::create(out, map, {.method = Method::gauss_markov}));
-  } else if (is_yaml_file(out)) {
-    write_map_yaml(map, out, options.yaml);
-  } else {
-    write_file(out, format_map(map, out, ""));
-  }
-  fmt::print("converted: {} landmarks and {} routes to {}\n", map.landmarks(), map.routes(),
-             out.string());
+  convert_map(in, out, options.yaml);
 }
 
 }  // namespace

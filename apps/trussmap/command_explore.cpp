@@ -164,7 +164,7 @@ void setup_explore(const Command& app) {
       .check(above_zero())
       .capture_default_str();
   command.add_option("--wheelbase", options->world.wheelbase, "Distance of the wheels [m]")
-      .check(above_zero())
+      .check(length_of_robot())
       .capture_default_str();
   command.add_flag("--no-compass", options->no_compass, "The robot has no compass");
   command

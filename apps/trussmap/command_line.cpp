@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "command_line.hpp"
 
+#include "path_checks.hpp"
+
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -122,7 +124,10 @@ void Command::footer(const std::string& text) const {
 }
 
 void Command::callback(std::function<void()> run) const {
-  app_->callback(std::move(run));
+  app_->callback([app = app_, run = std::move(run)] {
+    check_paths(*app);
+    run();
+  });
 }
 
 std::size_t Command::count(const std::string& name) const {

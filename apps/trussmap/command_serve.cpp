@@ -10,16 +10,23 @@
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 
+#include <cerrno>
 #include <cstdlib>
+#include <fcntl.h>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <spawn.h>
+#include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 #include <fmt/format.h>
 
 namespace trussmap::app {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct ServeCommand {
   ModelRecordingsOptions input;
@@ -28,19 +35,46 @@ struct ServeCommand {
   bool no_browser = false;
 };
 
+/// A page that leads to the address, for the user alone: an address on a command line is everyone's
+/// to read (ps). Empty where it cannot be written.
+fs::path page_that_leads_to(const std::string& address, const fs::path& folder) {
+  fs::path page = fs::absolute(folder) / "open.html";
+  ::unlink(page.c_str());
+  constexpr mode_t kOwnerAlone = 0600;
+  const int file =
+      ::open(page.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kOwnerAlone);
+  if (file < 0) return {};
+  const std::string text = fmt::format(
+      "<!DOCTYPE html><meta charset=\"utf-8\"><meta name=\"referrer\" content=\"no-referrer\">"
+      "<meta http-equiv=\"refresh\" content=\"0; url={0}\"><a href=\"{0}\">The workbench</a>\n",
+      address);
+  const bool whole = ::write(file, text.data(), text.size()) == std::ssize(text);
+  ::close(file);
+  return whole ? page : fs::path();
+}
+
 /// In the user's browser, where there is a screen; whether that works or not.
-void open_in_browser(const std::string& address) {
+void open_in_browser(const std::string& address, const fs::path& folder) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+  const fs::path page = page_that_leads_to(address, folder);
+  if (page.empty()) return;
   std::string program = "xdg-open";
-  std::string argument = address;
+  std::string argument = page.string();
   char* arguments[] = {program.data(), argument.data(), nullptr};
   pid_t child = 0;
   posix_spawn_file_actions_t quiet;
   posix_spawn_file_actions_init(&quiet);
   posix_spawn_file_actions_addopen(&quiet, 1, "/dev/null", 1, 0);  // for writing
   posix_spawn_file_actions_addopen(&quiet, 2, "/dev/null", 1, 0);
-  posix_spawnp(&child, program.c_str(), &quiet, nullptr, arguments, environ);
+  const bool begun =
+      posix_spawnp(&child, program.c_str(), &quiet, nullptr, arguments, environ) == 0;
   posix_spawn_file_actions_destroy(&quiet);
+  if (!begun) return;
+  std::thread([child] {  // no zombie
+    while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  })
+      .detach();
 }
 
 /// "riddle.workbench" for maps/riddle/.
@@ -67,7 +101,7 @@ void run_serve(const ServeCommand& options) {
       server.address(), folder);
   for (const std::string& note : notes) fmt::print("{}\n", note);
   std::fflush(stdout);
-  if (!options.no_browser) open_in_browser(server.address());
+  if (!options.no_browser) open_in_browser(server.address(), folder);
   server.run([&](const LocalRequest& request) { return bench_reply(request, work, origin); },
              [&work] { return work.status(); });
 }

@@ -269,7 +269,7 @@ void add_wheels(const Command& command, CommandOptions& options) {
       .type_name("K")
       .check(above_zero());
   command.add_option("--wheelbase", options.wheelbase, "With --wheels: their distance [m]")
-      .check(above_zero())
+      .check(length_of_robot())
       .capture_default_str();
   command.add_flag("--no-compass", options.no_compass, "With --wheels: the robot has no compass");
   command

@@ -4,7 +4,10 @@
 
 #include "bag_output.hpp"
 #include "option_checks.hpp"
+#include "private_folder.hpp"
 #include "terminal.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/log_files.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
@@ -25,6 +28,25 @@ Model model_for(const fs::path& folder, const std::string& given) {
                                 ": dead reckoned by a wheelbase of 0.34 m and default noise; "
                                 "--model says which"));
   return {};
+}
+
+/// That the bag with its map gives a recording again, where it has what ties a drive to a place: a
+/// bag has no loops.
+void require_readable_bag(const fs::path& in, const Recording& recording, const Bag& bag) {
+  if (recording.sightings.empty() && recording.fixes.empty() && recording.truth.empty()) return;
+  const PrivateFolder folder;
+  const fs::path file = folder.path() / "bag.mcap";
+  const fs::path map = folder.path() / "map.toml";
+  write_files({{file, bag.bytes}, {map, bag.map}});
+  try {
+    const LogRecording back = read_log_recording(file, map);
+    static_cast<void>(
+        recording_folder("", back.recording, "", {{"model.toml", format_model(back.model)}}));
+  } catch (const InputError& error) {
+    throw InputError(
+        in.string(), 0,
+        "makes a bag that could not be read again: " + folder.without_it(error.what()));
+  }
 }
 
 }  // namespace
@@ -55,6 +77,7 @@ void convert_recording(const fs::path& in, const fs::path& out, const fs::path& 
   how.wheel_radius = options.wheel_radius;
   how.epoch = epoch_of(options.epoch);
   const Bag bag = format_recording_bag(recording, model_for(in, options.model), how);
+  require_readable_bag(in, recording, bag);
   NamedContents files{{out, bag.bytes}};
   if (!map.empty()) {
     files.emplace_back(map, "# Reads " + out.filename().string() + " back.\n\n" + bag.map);

@@ -8,7 +8,9 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <random>
 #include <string_view>
@@ -18,6 +20,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
 #include <boost/asio/write.hpp>
@@ -38,7 +41,9 @@ using namespace std::chrono_literals;
 
 constexpr std::uint32_t kMostHeader = 16 * 1024;
 constexpr std::uint64_t kMostBody = std::uint64_t{64} * 1024;
-constexpr int kMostConnections = 64;
+constexpr int kMostConnections = 64;        // of those that have shown the token
+constexpr std::size_t kMostUnproven = 256;  // of others: the oldest goes first
+constexpr auto kUnproven = 5s;              // that one of these lasts
 constexpr auto kSilence = 60s;
 constexpr auto kLook = 50ms;  // for events
 constexpr auto kHeartbeat = 10s;
@@ -137,13 +142,39 @@ struct LocalServer::Listener {
 
   void accept();
 
+  /// One more connection that has not shown the token; `close` ends it. Too many end the oldest.
+  std::uint64_t begin(std::function<void()> close) {
+    std::function<void()> oldest;
+    std::uint64_t number = 0;
+    {
+      const std::scoped_lock lock(mutex);
+      number = next++;
+      unproven.emplace(number, std::move(close));
+      if (unproven.size() > kMostUnproven) {
+        oldest = std::move(unproven.begin()->second);
+        unproven.erase(unproven.begin());
+      }
+    }
+    if (oldest) oldest();
+    return number;
+  }
+
+  /// It is over, or has shown the token.
+  void forget(std::uint64_t number) {
+    const std::scoped_lock lock(mutex);
+    unproven.erase(number);
+  }
+
   asio::io_context context;
   tcp::acceptor acceptor;
   asio::steady_timer again;
   std::string host;
   std::string other_host;
   std::string token = secret();
-  std::atomic<int> connections = 0;
+  std::atomic<int> proven = 0;  ///< connections that have shown the token
+  std::mutex mutex;             // of `unproven`
+  std::map<std::uint64_t, std::function<void()>> unproven;  ///< in order of their arrival
+  std::uint64_t next = 0;
   std::function<LocalReply(const LocalRequest&)> answer;
   std::function<std::string()> event;
 };
@@ -151,37 +182,77 @@ struct LocalServer::Listener {
 namespace {
 
 /// One connection: a request, its answer, the next; or events until it breaks. One that breaks,
-/// says nothing for long or is no HTTP is closed, and that is all.
+/// says nothing for long, does not show the token soon or is no HTTP is closed, and that is all.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(tcp::socket socket, LocalServer::Listener& listener)
-      : stream_(std::move(socket)), timer_(stream_.get_executor()), listener_(listener) {
-    ++listener_.connections;
+      : stream_(std::move(socket)),
+        timer_(stream_.get_executor()),
+        listener_(listener),
+        ends_(std::chrono::steady_clock::now() + kUnproven) {}
+  ~Connection() {
+    if (proven_) {
+      --listener_.proven;
+    } else {
+      listener_.forget(number_);
+    }
   }
-  ~Connection() { --listener_.connections; }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
+
+  void begin() {
+    number_ = listener_.begin([connection = weak_from_this()] {
+      const std::shared_ptr<Connection> self = connection.lock();
+      if (!self) return;
+      asio::post(self->stream_.get_executor(), [self] {
+        beast::error_code ignored;
+        self->stream_.socket().close(ignored);
+      });
+    });
+    asio::post(stream_.get_executor(), [self = shared_from_this()] { self->read(); });
+  }
+
+ private:
+  /// Who has not shown the token gets a few seconds in all, however many bytes it sends.
+  void limit_time() {
+    if (proven_) {
+      stream_.expires_after(kSilence);
+    } else {
+      stream_.expires_at(ends_);
+    }
+  }
 
   void read() {
     parser_.emplace();
     parser_->header_limit(kMostHeader);
     parser_->body_limit(kMostBody);
-    stream_.expires_after(kSilence);
+    limit_time();
     http::async_read(stream_, buffer_, *parser_,
                      [self = shared_from_this()](const beast::error_code& error, std::size_t) {
                        if (!error) self->answer(self->parser_->release());
                      });
   }
 
- private:
+  /// False: too many have shown it.
+  bool prove() {
+    if (proven_) return true;
+    if (++listener_.proven > kMostConnections) {
+      --listener_.proven;
+      return false;
+    }
+    proven_ = true;
+    listener_.forget(number_);
+    return true;
+  }
+
   void answer(const Request& request) {
-    const bool allowed = listener_.is_allowed(request);
+    const bool allowed = listener_.is_allowed(request) && prove();
     if (allowed && request.method() == http::verb::get && listener_.path_of(request) == "events") {
       return begin_events(request);
     }
     const LocalReply refused{403, "text/plain", "not from here\n"};
     response_ = listener_.response(request, allowed ? listener_.reply_to(request) : refused);
-    stream_.expires_after(kSilence);
+    limit_time();
     http::async_write(stream_, response_,
                       [self = shared_from_this()](const beast::error_code& error, std::size_t) {
                         if (error) return;
@@ -231,6 +302,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   beast::tcp_stream stream_;
   asio::steady_timer timer_;
   LocalServer::Listener& listener_;
+  std::chrono::steady_clock::time_point ends_;  // while it has not shown the token
+  std::uint64_t number_ = 0;
+  bool proven_ = false;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   Response response_;
@@ -250,9 +324,7 @@ void LocalServer::Listener::accept() {
                             again.expires_after(kRetry);
                             return again.async_wait([this](const beast::error_code&) { accept(); });
                           }
-                          if (connections < kMostConnections) {  // else it is closed
-                            std::make_shared<Connection>(std::move(socket), *this)->read();
-                          }
+                          std::make_shared<Connection>(std::move(socket), *this)->begin();
                           accept();
                         });
 }

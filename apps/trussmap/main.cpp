@@ -14,6 +14,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -27,10 +28,19 @@ namespace {
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
 
-int complain(const std::exception& error, int status) {
-  const std::string message = trussmap::escaped_controls(error.what(), true);
+int complain(const std::string& what, int status) {
+  const std::string message = trussmap::escaped_controls(what, true);
   std::fprintf(stderr, "trussmap: %s\n", trussmap::shortened_words(message).c_str());
   return status;
+}
+
+int complain(const std::exception& error, int status) {
+  return complain(std::string(error.what()), status);
+}
+
+/// Its own words name functions of the C++ library.
+std::string in_words(const std::filesystem::filesystem_error& error) {
+  return error.path1().string() + ": " + error.code().message();
 }
 
 /// Ctrl-C, a closed terminal: nothing half written stays behind, and the program ends as if it had
@@ -57,6 +67,20 @@ void check_command(const CLI::App& app, int argc, char** argv) {
   }
   throw trussmap::app::UsageError("\"" + std::string(argv[1]) +
                                   "\" is no command, expected one of " + names);
+}
+
+/// With the first thing that the command was given, which mostly is what was read.
+std::string out_of_memory(const CLI::App& app) {
+  std::string what;
+  for (const CLI::App* command : app.get_subcommands()) {
+    for (const CLI::Option* option : command->get_options()) {
+      if (!option->get_positional() || option->count() == 0) continue;
+      for (const std::string& one : option->results()) what += (what.empty() ? "" : ", ") + one;
+      break;
+    }
+  }
+  return (what.empty() ? std::string() : what + ": ") +
+         "there is not enough memory for it, expected less data or a larger machine";
 }
 
 /// Large matrices are made and dropped by the thousand: their memory is kept instead of being
@@ -128,7 +152,9 @@ int run(int argc, char** argv) {
   } catch (const trussmap::app::UsageError& error) {
     return complain(error, kBadInput);
   } catch (const std::filesystem::filesystem_error& error) {  // an output folder, mostly
-    return complain(error, kBadInput);
+    return complain(in_words(error), kBadInput);
+  } catch (const std::bad_alloc&) {
+    return complain(out_of_memory(app), kFailed);
   } catch (const std::exception& error) {
     return complain(error, kFailed);
   }

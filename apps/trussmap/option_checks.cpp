@@ -21,6 +21,14 @@ std::optional<Number> number_of(std::string_view text) {
 
 constexpr std::uint64_t kMostEta = 1'000'000'000;
 
+// In any unit: squares of other numbers, and what is divided by them, have no bounds.
+constexpr double kSmallest = 1e-15;
+constexpr double kLargest = 1e15;
+
+// m, of a robot.
+constexpr double kShortest = 1e-4;
+constexpr double kLongest = 1e4;
+
 bool is_whole_number(const std::string& text, std::uint64_t least) {
   const std::optional<std::uint64_t> value = number_of<std::uint64_t>(text);
   return value && *value >= least;
@@ -71,17 +79,32 @@ StretchOfTime parse_stretch(const std::string& text) {
 }
 
 Check above_zero() {
-  return {[](const std::string& text) {
+  return {[](const std::string& text) -> std::string {
             const std::optional<double> value = finite_number(text);
-            return value && *value > 0.0 ? "" : "'" + text + "' is not a number above 0";
+            if (!value || !(*value > 0.0)) return "'" + text + "' is not a number above 0";
+            return *value >= kSmallest && *value <= kLargest
+                       ? ""
+                       : "'" + text + "' is not a number from 1e-15 to 1e15";
+          },
+          ""};
+}
+
+Check length_of_robot() {
+  return {[](const std::string& text) -> std::string {
+            const std::optional<double> value = finite_number(text);
+            if (!value || !(*value > 0.0)) return "'" + text + "' is not a number above 0";
+            return *value >= kShortest && *value <= kLongest
+                       ? ""
+                       : "'" + text + "' is not a length from 0.0001 to 10000 m";
           },
           ""};
 }
 
 Check zero_or_more() {
-  return {[](const std::string& text) {
+  return {[](const std::string& text) -> std::string {
             const std::optional<double> value = finite_number(text);
-            return value && *value >= 0.0 ? "" : "'" + text + "' is not a number of 0 or more";
+            if (!value || !(*value >= 0.0)) return "'" + text + "' is not a number of 0 or more";
+            return *value <= kLargest ? "" : "'" + text + "' is not a number of at most 1e15";
           },
           ""};
 }

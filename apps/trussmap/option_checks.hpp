@@ -19,10 +19,13 @@ namespace trussmap::app {
 /// The finite number that the whole text is.
 [[nodiscard]] std::optional<double> finite_number(std::string_view text);
 
-/// A number above 0, infinity not included.
+/// A number above 0, from 1e-15 to 1e15: squares of others overflow.
 [[nodiscard]] Check above_zero();
 
-/// A number of 0 or more, infinity not included.
+/// A length of a robot, as model files may have it: 0.1 mm to 10 km.
+[[nodiscard]] Check length_of_robot();
+
+/// A number from 0 to 1e15.
 [[nodiscard]] Check zero_or_more();
 
 /// A whole number from `least` on.

@@ -101,13 +101,16 @@ void add_wheel_options(const Command& command, SimulateOptions& options) {
       .check(one_of({"differential", "unicycle", "skid-steer", "tricycle", "ackermann", "omni3",
                      "mecanum", "wheels"}))
       .capture_default_str();
-  add_positive(command, "--wheelbase", options.wheelbase,
-               "Distance of the wheels on the left from those on the right [m]");
+  command
+      .add_option("--wheelbase", options.wheelbase,
+                  "Distance of the wheels on the left from those on the right [m]")
+      .check(length_of_robot())
+      .capture_default_str();
   command
       .add_option("--length", options.length,
                   "From the rear axle to the steered wheel (tricycle, ackermann: 0.5) or to the "
                   "front axle (mecanum: 0.3), from the centre to a wheel (omni3, wheels: 0.2) [m]")
-      .check(above_zero());
+      .check(length_of_robot());
   command.add_option("--wheel-left", options.wheel_left,
                      "How far to the left of the rear axle's centre the measured wheel of an "
                      "ackermann robot is [m]");

@@ -34,7 +34,7 @@ void add_tape_model_options(const Command& command, TapeOptions& options) {
       .add_option("--wheelbase", options.wheelbase,
                   "Distance of the wheels that the robot calculates with [m]; may be left out with "
                   "--model, which has it, and with --simulate (0.34 then)")
-      .check(above_zero());
+      .check(length_of_robot());
   command.add_option("--model", options.model, "Model to start from (TOML)").type_name("FILE");
   command.add_option("--out", options.out, "Write the model with what was found (TOML)")
       .type_name("FILE");

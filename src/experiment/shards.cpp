@@ -108,8 +108,8 @@ ShardResults parse_shard_results(std::string_view text, const std::string& name)
     ShardResults found = results_of(file);
     require_its_trials(found, name);
     return found;
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(name, 0, fmt::format("is a damaged shard: {}", error.what()));
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(name, 0, "is a damaged shard: a value is missing or of a wrong kind");
   } catch (const std::invalid_argument& error) {
     throw InputError(name, 0, fmt::format("is a damaged shard: {}", error.what()));
   }

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "effects/steering.hpp"
 #include "estimation/recording_start.hpp"
+#include "fit/along_paths.hpp"
 #include "fit/fit_stages.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace trussmap {
 namespace {
@@ -58,6 +60,22 @@ ProblemOptions moved_options(const FitTask& task, const Model& model) {
   return result;
 }
 
+/// Mean of where these poses have seen the landmark; of ranges or bearings alone, where they were.
+Vector2 place_seen_from(const RecordingProblem& problem, int landmark,
+                        const std::vector<Pose>& poses) {
+  Vector2 sum = Vector2::Zero();
+  double count = 0.0;
+  for (const Measurement& one : problem.measurements) {
+    const int pose = one.from - problem.landmark_count();
+    if (one.to != landmark || pose < 0 || pose >= static_cast<int>(poses.size())) continue;
+    const std::optional<Vector2> seen =
+        locates(one) ? one.kind->seen_from(one, poses[idx(pose)], {}) : std::nullopt;
+    sum += seen.value_or(poses[idx(pose)].position());
+    count += 1.0;
+  }
+  return sum / std::max(count, 1.0);
+}
+
 }  // namespace
 
 void lay_out_recordings(const FitTask& task, Fitting& now) {
@@ -89,17 +107,26 @@ void lay_out_again(const FitTask& task, Fitting& now) {
   now.fit.adjustment.state = placed(now.fit, landmarks);
 }
 
-RecordingState placed(const FitState& fit, const std::map<std::string, Vector2>& landmarks) {
+RecordingState along_paths(const RecordingProblem& problem,
+                           const std::vector<DrivenRecording>& recordings,
+                           const std::vector<SessionPath>& paths,
+                           const std::map<std::string, Vector2>& landmarks) {
   RecordingState state;
-  for (const std::string& name : fit.problem.landmarks) {
-    state.landmarks.push_back(landmarks.at(name));
-  }
-  for (const PoseNode& node : fit.problem.poses) {
+  for (const PoseNode& node : problem.poses) {
     const std::size_t session = idx(node.session);
-    state.poses.push_back(pose_at(fit.recordings[session].drive, fit.paths[session], node.t));
+    state.poses.push_back(pose_at(recordings[session].drive, paths[session], node.t));
   }
-  state.orientations = orientations_seen_from(fit.problem, state.poses);
+  for (int k = 0; k < problem.landmark_count(); ++k) {
+    const auto known = landmarks.find(problem.landmarks[idx(k)]);
+    state.landmarks.push_back(known != landmarks.end() ? known->second
+                                                       : place_seen_from(problem, k, state.poses));
+  }
+  state.orientations = orientations_seen_from(problem, state.poses);
   return state;
+}
+
+RecordingState placed(const FitState& fit, const std::map<std::string, Vector2>& landmarks) {
+  return along_paths(fit.problem, fit.recordings, fit.paths, landmarks);
 }
 
 }  // namespace trussmap

@@ -4,11 +4,11 @@
 #include "criticism/score_test.hpp"
 #include "drive/well_formed.hpp"
 #include "fit/fit_state.hpp"
+#include "fleet/day.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/fleet.hpp"
 
-#include <cctype>
-#include <chrono>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -57,21 +57,8 @@ void take(FleetRow& row, std::vector<Eigen::MatrixXd>& parts, const Effect& effe
 }  // namespace
 
 int day_number(const std::string& date) {
-  const auto fail = [&date] {
-    return InputError("date", 0, fmt::format("is \"{}\", expected YYYY-MM-DD", date));
-  };
-  if (date.size() != 10 || date[4] != '-' || date[7] != '-') throw fail();
-  for (const std::size_t k : {0U, 1U, 2U, 3U, 5U, 6U, 8U, 9U}) {
-    if (std::isdigit(static_cast<unsigned char>(date[k])) == 0) throw fail();
-  }
-  const auto number = [&date](std::size_t at, std::size_t count) {
-    return std::stoi(date.substr(at, count));
-  };
-  const std::chrono::year_month_day day{std::chrono::year{number(0, 4)},
-                                        std::chrono::month{static_cast<unsigned>(number(5, 2))},
-                                        std::chrono::day{static_cast<unsigned>(number(8, 2))}};
-  if (!day.ok()) throw fail();
-  return static_cast<int>(std::chrono::sys_days{day}.time_since_epoch().count());
+  if (const std::optional<int> day = day_in(date)) return *day;
+  throw InputError("date", 0, fmt::format("is \"{}\", expected YYYY-MM-DD", date));
 }
 
 FleetRow fleet_row(const std::string& robot, const std::string& date,

@@ -49,13 +49,11 @@ int CsvReader::require(std::string_view column) const {
       const std::size_t first = name.find_first_not_of(' ');
       if (first == std::string::npos) continue;
       if (name.substr(first, name.find_last_not_of(' ') - first + 1) == column) {
-        throw InputError(file_, line_,
-                         "column \"" + name + "\" has a blank, expected \"" + std::string(column) +
-                             "\" (blanks beside a comma are part of the field)");
+        fail("column \"" + name + "\" has a blank, expected \"" + std::string(column) +
+             "\" (blanks beside a comma are part of the field)");
       }
     }
-    throw InputError(file_, line_,
-                     "column \"" + std::string(column) + "\" is missing, found \"" + found + "\"");
+    fail("column \"" + std::string(column) + "\" is missing, found \"" + found + "\"");
   }
   return place;
 }
@@ -163,7 +161,9 @@ double CsvReader::number_or_absent(int column, double largest) const {
 }
 
 void CsvReader::fail(const std::string& what) const {
-  throw InputError(file_, line_, what);
+  std::string text = what;  // with names from the file: a byte 0 would end the message
+  std::replace(text.begin(), text.end(), '\0', ' ');
+  throw InputError(file_, line_, text);
 }
 
 std::string csv_field(std::string_view text) {

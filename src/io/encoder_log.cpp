@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "io/number_rows.hpp"
+#include "io/recording_limits.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/recording_files.hpp"
@@ -57,6 +58,7 @@ struct Sample {
   double steer = 0.0;  ///< rad
   double drive = 0.0;  ///< ticks
   Pose tracked;
+  std::size_t line = 0;
 };
 
 class LogReader {
@@ -149,7 +151,8 @@ class LogReader {
         {time[0],
          header.steer_per_turn * 2.0 * std::numbers::pi * signed_turn + header.steer_offset,
          ticks[1],
-         {tracked[0], tracked[1], tracked[2]}});
+         {tracked[0], tracked[1], tracked[2]},
+         line_});
   }
 
   fs::path file_;
@@ -209,6 +212,9 @@ EncoderLogRecording read_encoder_log(const fs::path& file) {
                                                    header.metres_per_turn);
     recording.drive.covariates[1].values.push_back(steered / (now.t - log.samples[first].t));
     recording.truth.push_back(truth_of(now, header.sensor, result.epoch));
+    const SourceLine source(recording.name, now.line);
+    source.expect_last_row(recording.drive);
+    source.expect(recording.truth.back());
     travelled = steered = 0.0;
     first = k;
   }

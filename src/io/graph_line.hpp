@@ -39,7 +39,10 @@ class GraphLine {
   double number(std::string_view meaning) {
     const std::string_view found = word();
     double value = 0.0;
+    // In whatever unit: sums of squares of larger ones, by information as large, overflow.
+    constexpr double kLargest = 1e30;
     if (!parse(found, value) || !std::isfinite(value)) complain(found, meaning, "a number");
+    if (std::abs(value) > kLargest) complain(found, meaning, "a number of at most 1e30 in size");
     return value;
   }
 
@@ -60,7 +63,10 @@ class GraphLine {
     if (!found.empty()) fail(fmt::format("\"{}\" is too much, the line should end here", found));
   }
 
-  [[noreturn]] void fail(const std::string& what) const { throw InputError(file_, number_, what); }
+  [[noreturn]] void fail(std::string what) const {
+    std::replace(what.begin(), what.end(), '\0', ' ');  // from the file: the message would end
+    throw InputError(file_, number_, what);
+  }
   [[nodiscard]] std::size_t line_number() const { return number_; }
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "geometry/index.hpp"
+#include "io/recording_limits.hpp"
 #include "statistics/median.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/map_files.hpp"
@@ -67,6 +68,11 @@ class GraphReader {
     return std::to_string(graph_.vertices[idx(vertex)].id);
   }
 
+  /// For SourceLine: edges have no lines any more.
+  [[nodiscard]] std::string edge_name(int from, int to) const {
+    return file_ + ", edge from " + name_of(from) + " to " + name_of(to);
+  }
+
   [[noreturn]] void unknown(int from, int to) const {
     fail("has an edge from " + name_of(from) + " to " + name_of(to) +
          " that leaves a coordinate unknown, expected information of full rank");
@@ -110,6 +116,7 @@ class GraphReader {
           {static_cast<double>(from), static_cast<double>(place_[idx(edge.to)]), edge.measured.x,
            edge.measured.y, edge.measured.heading,
            std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1))), std::sqrt(covariance(2, 2))});
+      SourceLine(edge_name(edge.from, edge.to), 0).expect(result_.recording.loops.back());
     }
   }
 
@@ -128,6 +135,7 @@ class GraphReader {
       drive.covariates[0].values.push_back(way.x());
       drive.covariates[1].values.push_back(way.y());
       drive.covariates[2].values.push_back(steps_[k]->measured.heading);
+      SourceLine(edge_name(steps_[k]->from, steps_[k]->to), 0).expect_last_row(drive);
       const Matrix3 covariance = covariance_of(*steps_[k]);
       travel.push_back(0.5 * (covariance(0, 0) + covariance(1, 1)));
       heading.push_back(covariance(2, 2));
@@ -160,6 +168,7 @@ class GraphReader {
       const double bearing = std::atan2(edge.measured.y(), edge.measured.x());
       sightings.push_back(
           {static_cast<double>(place_[idx(edge.pose)]), name_of(edge.point), range, bearing});
+      SourceLine(edge_name(edge.pose, edge.point), 0).expect(sightings.back());
       const Matrix2 R = rotation(bearing);
       if (!(edge.information.determinant() > 0.0)) unknown(edge.pose, edge.point);
       const Matrix2 covariance = R.transpose() * edge.information.inverse() * R;

@@ -3,6 +3,7 @@
 #include "io/csv.hpp"
 #include "io/nominal_wheelbase.hpp"
 #include "io/number_rows.hpp"
+#include "io/recording_limits.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"
 
@@ -26,19 +27,20 @@ struct Row {
   double truth;  ///< m
   double speed;  ///< m/s
   double range;  ///< m
+  std::size_t line;
 };
 
 std::vector<Row> rows_of(const fs::path& file) {
   std::vector<Row> rows;
-  for (const std::vector<double>& one : read_number_rows(file, 4, kCommas)) {
-    const Row row{one[0], one[1], one[2], one[3]};
+  for (const NumberRow& one : read_number_rows(file, 4, kCommas)) {
+    const Row row{one[0], one[1], one[2], one[3], one.line};
     if (!rows.empty() && !(row.t > rows.back().t)) {
-      throw InputError(file.string(), 0,
+      throw InputError(file.string(), row.line,
                        "time repeats or runs backwards at " + csv_number(row.t) +
                            ", expected rows in order of time");
     }
     if (!(row.range >= 0.0)) {
-      throw InputError(file.string(), 0,
+      throw InputError(file.string(), row.line,
                        "a negative range at time " + csv_number(row.t) + ", expected 0 or more");
     }
     rows.push_back(row);
@@ -63,13 +65,17 @@ LineRecording read_line_robot(const fs::path& file) {
   recording.survey.push_back({"post", kPost, 0.0});
   Drive& drive = recording.drive;
   for (std::size_t k = 0; k < rows.size(); ++k) {
+    const SourceLine source(recording.name, rows[k].line);
     recording.truth.push_back({rows[k].t, rows[k].truth, 0.0, 0.0});
+    source.expect(recording.truth.back());
     if (k == 0) continue;
     const double travel = rows[k - 1].speed * (rows[k].t - rows[k - 1].t);
     drive.t.push_back(rows[k].t);
     drive.left.push_back(travel);
     drive.right.push_back(travel);
     recording.sightings.push_back({rows[k].t, "post", rows[k].range, kAbsent});
+    source.expect_last_row(drive);
+    source.expect(recording.sightings.back());
   }
   const double step = (rows.back().t - rows.front().t) / static_cast<double>(drive.rows());
   Model& model = result.model;

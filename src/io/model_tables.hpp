@@ -4,6 +4,7 @@
 // The tables of a model, in a file that has others, too.
 #pragma once
 
+#include "io/model_text.hpp"
 #include "io/toml_parser.hpp"
 #include "trussmap/model.hpp"
 
@@ -14,8 +15,5 @@ namespace trussmap {
 /// Of a table that holds robot, noise and effect, or some of them. Throws InputError as read_model
 /// does; `file` is for messages.
 [[nodiscard]] Model model_of(const toml::table& root, const std::string& file);
-
-/// Of a model file's text.
-[[nodiscard]] Model model_from_text(const std::string& text, const std::string& file);
 
 }  // namespace trussmap

@@ -158,8 +158,7 @@ Model model_from_text(const std::string& text, const std::string& file) {
   try {
     return model_of(toml::parse(text), file);
   } catch (const toml::parse_error& error) {
-    throw InputError(file, error.source().begin.line,
-                     "no TOML: " + std::string(error.description()));
+    throw InputError(file, error.source().begin.line, toml_fault(error));
   } catch (const TomlAssertion&) {
     throw InputError(file, 0, "no TOML: keys or values are malformed");
   }

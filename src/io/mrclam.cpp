@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "io/number_rows.hpp"
+#include "io/recording_limits.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"
 
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,7 +37,10 @@ int number_of(double value) {
 }
 
 void read_drive(const fs::path& prefix, MrclamRecording& result) {
-  const std::vector<NumberRow> rows = require_rows(beside(prefix, "_Odometry.dat"), 3);
+  const fs::path file = require_plain_or_xz(beside(prefix, "_Odometry.dat"));
+  const std::string name = file.string();
+  const std::vector<NumberRow> rows = read_rows(file, 3);
+  SourceLine(name, rows.front().line).expect("time", rows.front()[0], kLargestTime);
   result.epoch = std::floor(rows.front()[0]);
   Drive& drive = result.recording.drive;
   double before = since(result.epoch, rows.front()[0]);
@@ -48,6 +53,7 @@ void read_drive(const fs::path& prefix, MrclamRecording& result) {
       drive.t.push_back(t);
       drive.left.push_back((v - 0.5 * kCreateWheelbase * w) * dt);
       drive.right.push_back((v + 0.5 * kCreateWheelbase * w) * dt);
+      SourceLine(name, rows[k].line).expect_last_row(drive);
       before = t;
     } else {
       ++result.merged_times;
@@ -56,8 +62,7 @@ void read_drive(const fs::path& prefix, MrclamRecording& result) {
     w = rows[k][2];
   }
   if (drive.rows() < 2) {
-    throw InputError(beside(prefix, "_Odometry.dat").string(), 0,
-                     "fewer than three times, expected a drive");
+    throw InputError(name, 0, "fewer than three times, expected a drive");
   }
 }
 
@@ -67,13 +72,14 @@ void read_sightings(const fs::path& prefix, MrclamRecording& result) {
     subjects[number_of(row[1])] = number_of(row[0]);
   }
   const fs::path file = require_plain_or_xz(beside(prefix, "_Measurement.dat"));
+  const std::string name = file.string();
   const Drive& drive = result.recording.drive;
   std::vector<Sighting>& sightings = result.recording.sightings;
   double before = -std::numeric_limits<double>::infinity();
   for (const NumberRow& row : read_rows(file, 4)) {
     if (row[2] < 0.0) {
       throw InputError(
-          file.string(), 0,
+          name, row.line,
           "a negative range at time " + std::to_string(row[0]) + ", expected 0 or more");
     }
     if (row[0] < before) ++result.unordered_sightings;
@@ -88,6 +94,7 @@ void read_sightings(const fs::path& prefix, MrclamRecording& result) {
       ++result.outside_drive;
     } else {
       sightings.push_back({t, std::to_string(subject->second), row[2], row[3]});
+      SourceLine(name, row.line).expect(sightings.back());
     }
   }
   if (sightings.empty()) {
@@ -107,11 +114,19 @@ void read_sightings(const fs::path& prefix, MrclamRecording& result) {
 void read_survey(const fs::path& prefix, Recording& recording) {
   const fs::path file = plain_or_xz(prefix.parent_path() / "Landmark_Groundtruth.dat");
   if (file.empty()) return;
+  const std::string name = file.string();
+  std::set<int> subjects;
   for (const NumberRow& row : read_rows(file, 5)) {
     const int subject = number_of(row[0]);
     if (subject < 0) continue;
+    if (!subjects.insert(subject).second) {
+      throw InputError(
+          name, row.line,
+          "subject " + std::to_string(subject) + " is surveyed twice, expected each once");
+    }
     const double sd = std::sqrt(0.5 * (row[3] * row[3] + row[4] * row[4]));
     recording.survey.push_back({std::to_string(subject), row[1], row[2], sd > 0.0 ? sd : kAbsent});
+    SourceLine(name, row.line).expect(recording.survey.back());
   }
 }
 
@@ -122,11 +137,13 @@ void read_truth(const fs::path& prefix, MrclamRecording& result) {
   if (file.empty()) return;
   const Drive& drive = result.recording.drive;
   std::vector<TruthRow>& truth = result.recording.truth;
+  const std::string name = file.string();
   for (const NumberRow& row : read_rows(file, 4)) {
     const double t = since(result.epoch, row[0]);
     if (t < drive.start() || t > drive.t.back()) continue;
     if (!truth.empty() && t <= truth.back().t) continue;
     truth.push_back({t, row[1], row[2], row[3]});
+    SourceLine(name, row.line).expect(truth.back());
   }
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "io/number_rows.hpp"
 
+#include "files/present.hpp"
+#include "io/csv_record.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/write_files.hpp"
 
@@ -13,18 +15,17 @@
 
 namespace trussmap {
 
-std::vector<std::vector<double>> read_number_rows(const std::filesystem::path& file,
-                                                  std::size_t columns,
-                                                  std::string_view separators) {
+std::vector<NumberRow> read_number_rows(const std::filesystem::path& file, std::size_t columns,
+                                        std::string_view separators) {
   const std::string text = read_file(file);
-  std::vector<std::vector<double>> rows;
+  std::vector<NumberRow> rows;
   std::size_t line = 0;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::string_view content = std::string_view(text).substr(at, end - at);
     at = end + 1;
     ++line;
-    std::vector<double> row;
+    NumberRow row{{}, line};
     for (std::size_t k = content.find_first_not_of(separators);
          k != std::string_view::npos && content[k] != '#';) {
       const std::size_t stop = std::min(content.find_first_of(separators, k), content.size());
@@ -32,17 +33,16 @@ std::vector<std::vector<double>> read_number_rows(const std::filesystem::path& f
       double value = 0.0;
       const auto [rest, status] = std::from_chars(word.data(), word.data() + word.size(), value);
       if (status != std::errc() || rest != word.data() + word.size() || !std::isfinite(value)) {
-        throw InputError(file.string(), line,
-                         "\"" + std::string(word) + "\", expected a finite number");
+        throw InputError(file.string(), line, shown_field(word) + ", expected a finite number");
       }
-      row.push_back(value);
+      row.values.push_back(value);
       k = content.find_first_not_of(separators, stop);
     }
-    if (row.empty()) continue;
-    if (row.size() != columns) {
+    if (row.values.empty()) continue;
+    if (row.values.size() != columns) {
       throw InputError(
           file.string(), line,
-          std::to_string(row.size()) + " numbers, expected " + std::to_string(columns));
+          std::to_string(row.values.size()) + " numbers, expected " + std::to_string(columns));
     }
     rows.push_back(std::move(row));
   }
@@ -51,11 +51,10 @@ std::vector<std::vector<double>> read_number_rows(const std::filesystem::path& f
 }
 
 std::filesystem::path plain_or_xz(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::exists(path, ignored)) return path;
+  if (is_present(path)) return path;
   std::filesystem::path compressed = path;
   compressed += ".xz";
-  if (std::filesystem::exists(compressed, ignored)) return compressed;
+  if (is_present(compressed)) return compressed;
   return {};
 }
 

@@ -4,6 +4,7 @@
 // Tables of bare numbers, as data sets come.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string_view>
 #include <vector>
@@ -13,7 +14,12 @@ namespace trussmap {
 inline constexpr std::string_view kWhiteSpace = " \t\r";
 inline constexpr std::string_view kCommas = ", \t\r";
 
-using NumberRow = std::vector<double>;
+struct NumberRow {
+  std::vector<double> values;
+  std::size_t line = 0;  ///< of the file, from 1
+
+  double operator[](std::size_t column) const { return values[column]; }
+};
 
 /// Rows of `columns` finite numbers between `separators`; blank lines and what begins with # are
 /// skipped. Decompresses .xz. Throws InputError with line, also where there is no row.

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "io/csv_record.hpp"
 #include "io/number_rows.hpp"
+#include "io/recording_limits.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/recording_files.hpp"
@@ -74,12 +76,30 @@ double positive_number(const std::map<std::string, std::string>& metadata, const
   const std::string text = found == metadata.end() ? std::string() : found->second;
   double value = 0.0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status != std::errc() || end != text.data() + text.size() || !(value > 0.0) ||
-      !std::isfinite(value)) {
+  constexpr double kSmallest = 1e-3;  // a gear's ratio, counts per turn
+  constexpr double kLargest = 1e9;
+  if (status != std::errc() || end != text.data() + text.size() || !(value >= kSmallest) ||
+      !(value <= kLargest)) {
     throw InputError(file.string(), 0,
-                     std::string(key) + " is \"" + text + "\", expected a positive number");
+                     std::string(key) + " is " + shown_field(text) +
+                         ", expected a positive number, from 0.001 to 1e9");
   }
   return value;
+}
+
+/// As the next row of the drive.
+void take_row(const NumberRow& row, const OptiOdomRobot& robot, double metre_per_tick,
+              Drive& drive) {
+  drive.t.push_back(row[0]);
+  if (robot.drive == DriveKind::differential) {
+    drive.right.push_back(row[4] * metre_per_tick);
+    drive.left.push_back(row[5] * metre_per_tick);
+    return;
+  }
+  for (std::size_t k = 0; k < robot.columns.size(); ++k) {
+    const bool steers = robot.columns[k] == "steer";
+    drive.covariates[k].values.push_back(steers ? row[4 + k] : row[4 + k] * metre_per_tick);
+  }
 }
 
 /// Encoders of 0.1 mm a tick, a motion capture of about a millimetre; the wheels' noise is that of
@@ -114,9 +134,9 @@ OptiOdomRecording read_optiodom(const fs::path& file) {
   const OptiOdomRobot* robot = type == metadata.end() ? nullptr : robot_of(type->second);
   if (robot == nullptr) {
     throw InputError(about.string(), 0,
-                     "the robot's type is \"" +
-                         (type == metadata.end() ? std::string() : type->second) +
-                         "\", expected diff, tricyc or omni3");
+                     "the robot's type is " +
+                         shown_field(type == metadata.end() ? "" : type->second) +
+                         ", expected diff, tricyc or omni3");
   }
   OptiOdomRecording result;
   result.model = nominal_model(*robot);
@@ -126,29 +146,21 @@ OptiOdomRecording read_optiodom(const fs::path& file) {
   Recording& recording = result.recording;
   recording.name = file.string();
   double before = -std::numeric_limits<double>::infinity();
-  const bool two = robot->drive == DriveKind::differential;
-  if (!two) {
+  if (robot->drive != DriveKind::differential) {
     for (const std::string& name : robot->columns) recording.drive.covariates.push_back({name, {}});
   }
   const std::size_t fields = 4 + robot->columns.size();
-  for (const std::vector<double>& row : read_number_rows(file, fields, kCommas)) {
+  const std::string name = file.string();
+  for (const NumberRow& row : read_number_rows(file, fields, kCommas)) {
     if (!(row[0] > before)) {
-      throw InputError(file.string(), recording.drive.rows() + 1,
-                       "time runs backwards, expected rows in order of time");
+      throw InputError(name, row.line, "time runs backwards, expected rows in order of time");
     }
     before = row[0];
     recording.truth.push_back({row[0], row[1], row[2], wrap_angle(row[3])});
-    recording.drive.t.push_back(row[0]);
-    if (two) {
-      recording.drive.right.push_back(row[4] * result.metre_per_tick);
-      recording.drive.left.push_back(row[5] * result.metre_per_tick);
-      continue;
-    }
-    for (std::size_t k = 0; k < robot->columns.size(); ++k) {
-      const bool steers = robot->columns[k] == "steer";
-      recording.drive.covariates[k].values.push_back(steers ? row[4 + k]
-                                                            : row[4 + k] * result.metre_per_tick);
-    }
+    take_row(row, *robot, result.metre_per_tick, recording.drive);
+    const SourceLine source(name, row.line);
+    source.expect(recording.truth.back());
+    source.expect_last_row(recording.drive);
   }
   if (recording.drive.rows() < 2) {
     throw InputError(file.string(), 0, "fewer than two rows, expected a drive");

@@ -286,8 +286,7 @@ std::vector<double> cells(std::string_view content, const std::string& file, std
       constexpr double kLargest = 1e9;  // mm, or frames: beyond any arena
       if (status != std::errc() || rest != word.data() + word.size() ||
           !(std::abs(value) <= kLargest)) {
-        throw InputError(file, line,
-                         "\"" + std::string(word) + "\", expected a number of size 1e9 at most");
+        throw InputError(file, line, shown_field(word) + ", expected a number of size 1e9 at most");
       }
     }
     row.push_back(value);

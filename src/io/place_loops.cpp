@@ -3,6 +3,7 @@
 #include "io/csv.hpp"
 #include "io/nominal_wheelbase.hpp"
 #include "io/number_rows.hpp"
+#include "io/recording_limits.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
@@ -47,7 +48,7 @@ std::vector<TaggedRow> tagged_rows(std::string_view text, const std::string& fil
       double value = 0.0;
       const auto [rest, status] = std::from_chars(word.data(), word.data() + word.size(), value);
       if (status != std::errc() || rest != word.data() + word.size() || !std::isfinite(value)) {
-        throw InputError(file, line, "\"" + std::string(word) + "\", expected a finite number");
+        throw InputError(file, line, shown_field(word) + ", expected a finite number");
       }
       row.numbers.push_back(value);
     }
@@ -76,6 +77,7 @@ void add_velocity(const TaggedRow& row, const std::string& file, TaggedRow& befo
     drive.t.push_back(t);
     drive.left.push_back(path - apart);
     drive.right.push_back(path + apart);
+    SourceLine(file, row.line).expect_last_row(drive);
   }
   before = row;
 }
@@ -102,8 +104,7 @@ PlaceLoopRecording read_place_loops(const fs::path& prefix) {
       require_numbers(row, 3, file.string());
       loops.push_back({row.numbers[0], row.numbers[1], 0.0, 0.0, 0.0});
     } else {
-      throw InputError(file.string(), row.line,
-                       "\"" + std::string(row.tag) + "\", expected odom2 or loop");
+      throw InputError(file.string(), row.line, shown_field(row.tag) + ", expected odom2 or loop");
     }
   }
   if (drive.rows() < 2) throw InputError(file.string(), 0, "no drive, expected rows of odom2");

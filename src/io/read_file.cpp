@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "files/present.hpp"
 #include "io/read_limits.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/write_files.hpp"
@@ -9,6 +10,8 @@
 #include <atomic>
 #include <cstdint>
 #include <fstream>
+#include <limits>
+#include <new>
 #include <stdexcept>
 #include <system_error>
 
@@ -24,6 +27,14 @@ std::atomic<int> most_nesting{ReadLimits().nesting};
 
 // Tables of numbers shrink to a tenth or so: what grows so much more is no such table.
 constexpr Growth kOfXz{64, 200};
+
+constexpr const char* kRemedy = "; allow more with --max-input-mib";
+
+std::string more_than_bytes(std::size_t most) {
+  const bool whole = most % kMebibyte == 0;
+  return "more than " + std::to_string(whole ? most / kMebibyte : most) +
+         (whole ? " MiB" : " bytes") + kRemedy;
+}
 
 std::string decompressed(const std::string& bytes, const fs::path& path) {
   lzma_stream stream = LZMA_STREAM_INIT;
@@ -65,13 +76,20 @@ std::size_t most_grown(const Growth& growth, std::size_t size) {
   return std::max(growth.mebibytes * kMebibyte, growth.times * size);
 }
 
+std::size_t most_read(const fs::path& file) {
+  constexpr std::size_t kMostOfStream = std::size_t{1024} * kMebibyte;
+  if (const std::size_t set = most_bytes; set > 0) return set;
+  std::error_code ignored;
+  return fs::is_regular_file(file, ignored) ? std::numeric_limits<std::size_t>::max()
+                                            : kMostOfStream;
+}
+
+InputError too_long(const std::string& name, std::size_t most) {
+  return {name, 0, "is " + more_than_bytes(most)};
+}
+
 std::string more_than(const Growth& growth) {
-  constexpr const char* kRemedy = "; allow more with --max-input-mib";
-  if (const std::size_t set = most_bytes; set > 0) {
-    const bool whole = set % kMebibyte == 0;
-    return "more than " + std::to_string(whole ? set / kMebibyte : set) +
-           (whole ? " MiB" : " bytes") + kRemedy;
-  }
+  if (const std::size_t set = most_bytes; set > 0) return more_than_bytes(set);
   return "more than " + std::to_string(growth.mebibytes) + " MiB and " +
          std::to_string(growth.times) + " times their size" + kRemedy;
 }
@@ -90,25 +108,22 @@ ReadLimits read_limits() {
   return {most_bytes, most_nesting};
 }
 
-std::string read_file(const fs::path& path) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    throw InputError(path.string(), 0, "is a folder, expected a file");
-  }
+std::string read_file(const fs::path& path) try {
+  require_file(path);
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(path.string(), 0, "cannot be opened, expected a readable file");
-  const std::size_t most = most_bytes;
+  if (!stream) throw unreadable(path.string());
+  const std::size_t most = most_read(path);
   std::string bytes;
   std::array<char, 1U << 16U> buffer{};
   while (stream) {  // a pipe does not tell its size
     stream.read(buffer.data(), buffer.size());
     bytes.append(buffer.data(), static_cast<std::size_t>(stream.gcount()));
-    if (most > 0 && bytes.size() > most) {
-      throw InputError(path.string(), 0, "is " + more_than({}));
-    }
+    if (bytes.size() > most) throw too_long(path.string(), most);
   }
   if (stream.bad()) throw InputError(path.string(), 0, "cannot be read to its end");
   return path.extension() == ".xz" ? decompressed(bytes, path) : bytes;
+} catch (const std::bad_alloc&) {
+  throw InputError(path.string(), 0, "needs more memory than there is");
 }
 
 }  // namespace trussmap

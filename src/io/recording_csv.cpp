@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "drive/well_formed.hpp"
+#include "files/present.hpp"
 #include "geometry/index.hpp"
 #include "io/csv.hpp"
+#include "io/recording_limits.hpp"
 #include "io/recording_streams.hpp"
 #include "recording/variable_names.hpp"
 #include "text/plain_text.hpp"
@@ -13,6 +15,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <set>
 #include <string>
@@ -35,16 +38,6 @@ bool is_reserved(std::string_view name) {
   return std::find(variables.begin(), variables.end(), name) != variables.end() ||
          std::find(std::begin(kTaken), std::end(kTaken), name) != std::end(kTaken);
 }
-
-// Beyond all that robots do and clocks show; what is larger is a slip of the pen or another unit,
-// and sums of its squares would overflow.
-constexpr double kLargestTime = 1e12;       // s: Unix time in nanoseconds is more
-constexpr double kLargestTravel = 1e6;      // m in a row
-constexpr double kLargestRange = 1e6;       // m
-constexpr double kLargestAngle = 1e9;       // rad: turns add up
-constexpr double kLargestYawRate = 1e3;     // rad/s: a gyro in degrees reads less on a real robot
-constexpr double kLargestPosition = 1e9;    // m
-constexpr double kLargestCovariate = 1e50;  // in whatever unit
 
 /// "milliseconds", ..., with how many make a second.
 struct TimeUnit {
@@ -109,9 +102,8 @@ void require_forward(const CsvReader& csv, double before, double now, bool may_r
                      ", expected " + (may_repeat ? "no earlier time" : "a later time"));
 }
 
-Drive read_drive(const fs::path& file) {
-  const std::string text = read_file(file);
-  CsvReader csv(text, file.string());
+Drive drive_in(std::string_view text, const std::string& file) {
+  CsvReader csv(text, file);
   const int t = csv.require("t");
   const int heading = csv.find("heading");
   const int yaw_rate = csv.find("yaw_rate");
@@ -150,7 +142,7 @@ Drive read_drive(const fs::path& file) {
     }
   }
   if (drive.rows() < 2) {
-    throw InputError(file.string(), csv.line(),
+    throw InputError(file, csv.line(),
                      std::to_string(drive.rows()) + (drive.rows() == 1 ? " row" : " rows") +
                          ", expected two at least (the first interval is as long as the second)");
   }
@@ -185,9 +177,9 @@ double sd_or_absent(const CsvReader& csv, int column, double largest, const char
   return sd;
 }
 
-std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, bool may_lack) {
-  const std::string text = read_file(file);
-  CsvReader csv(text, file.string());
+std::vector<Sighting> sightings_in(std::string_view text, const std::string& file,
+                                   const Drive& drive, bool may_lack) {
+  CsvReader csv(text, file);
   const int t = csv.require("t");
   const int landmark = csv.require("landmark");
   const int range = csv.find("range");
@@ -222,7 +214,7 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
     sightings.push_back(std::move(sighting));
   }
   if (sightings.empty()) {
-    throw InputError(file.string(), csv.line(),
+    throw InputError(file, csv.line(),
                      may_lack ? "no sighting, expected one row at least; beside a truth.csv, "
                                 "fixes.csv or loops.csv the file may be left out"
                               : "no sighting, expected one row at least");
@@ -230,15 +222,8 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
   return sightings;
 }
 
-}  // namespace
-
-bool is_covariate_name(std::string_view name) {
-  return is_name(name) && !is_reserved(name);
-}
-
-std::vector<SurveyPoint> read_survey(const fs::path& file) {
-  const std::string text = read_file(file);
-  CsvReader csv(text, file.string());
+std::vector<SurveyPoint> survey_in(std::string_view text, const std::string& file) {
+  CsvReader csv(text, file);
   const int landmark = csv.require("landmark");
   const int x = csv.require("x");
   const int y = csv.require("y");
@@ -261,16 +246,13 @@ std::vector<SurveyPoint> read_survey(const fs::path& file) {
     survey.push_back(std::move(point));
   }
   if (survey.empty()) {
-    throw InputError(file.string(), csv.line(), "no landmark, expected one row at least");
+    throw InputError(file, csv.line(), "no landmark, expected one row at least");
   }
   return survey;
 }
 
-namespace {
-
-std::vector<TruthRow> read_truth(const fs::path& file) {
-  const std::string text = read_file(file);
-  CsvReader csv(text, file.string());
+std::vector<TruthRow> truth_in(std::string_view text, const std::string& file) {
+  CsvReader csv(text, file);
   const int t = csv.require("t");
   const int x = csv.require("x");
   const int y = csv.require("y");
@@ -284,14 +266,13 @@ std::vector<TruthRow> read_truth(const fs::path& file) {
     truth.push_back(row);
   }
   if (truth.empty()) {
-    throw InputError(file.string(), csv.line(), "no pose, expected one row at least");
+    throw InputError(file, csv.line(), "no pose, expected one row at least");
   }
   return truth;
 }
 
-std::vector<Fix> read_fixes(const fs::path& file) {
-  const std::string text = read_file(file);
-  CsvReader csv(text, file.string());
+std::vector<Fix> fixes_in(std::string_view text, const std::string& file) {
+  CsvReader csv(text, file);
   const int t = csv.require("t");
   const int x = csv.require("x");
   const int y = csv.require("y");
@@ -310,14 +291,13 @@ std::vector<Fix> read_fixes(const fs::path& file) {
     fixes.push_back(fix);
   }
   if (fixes.empty()) {
-    throw InputError(file.string(), csv.line(), "no fix, expected one row at least");
+    throw InputError(file, csv.line(), "no fix, expected one row at least");
   }
   return fixes;
 }
 
-std::vector<Loop> read_loops(const fs::path& file, const Drive& drive) {
-  const std::string text = read_file(file);
-  CsvReader csv(text, file.string());
+std::vector<Loop> loops_in(std::string_view text, const std::string& file, const Drive& drive) {
+  CsvReader csv(text, file);
   const int t = csv.require("t");
   const int t2 = csv.require("t2");
   const int dx = csv.require("dx");
@@ -344,41 +324,76 @@ std::vector<Loop> read_loops(const fs::path& file, const Drive& drive) {
     loops.push_back(loop);
   }
   if (loops.empty()) {
-    throw InputError(file.string(), csv.line(), "no loop, expected one row at least");
+    throw InputError(file, csv.line(), "no loop, expected one row at least");
   }
   return loops;
 }
 
+/// Where a recording's streams are, by name.
+struct Streams {
+  std::function<bool(const char* name)> has;
+  std::function<std::string(const char* name)> text;
+};
+
+/// `folder` stands for the recording in messages.
+Recording recording_of(const fs::path& folder, const Streams& streams, bool drive_alone) {
+  const auto& has = streams.has;
+  const auto& text = streams.text;
+  const auto file = [&](const char* name) { return (folder / name).string(); };
+  if (!has("drive.csv")) {
+    throw InputError(file("drive.csv"), 0, "is missing, a recording needs it");
+  }
+  const bool may_lack = has("truth.csv") || has("fixes.csv") || has("loops.csv");
+  if (!has("sightings.csv") && !may_lack && !drive_alone) {
+    throw InputError(file("sightings.csv"), 0,
+                     "is missing, a recording without truth.csv, fixes.csv or loops.csv needs it");
+  }
+  Recording recording;
+  recording.name = folder.string();
+  Drive& drive = recording.drive;
+  drive = drive_in(text("drive.csv"), file("drive.csv"));
+  if (has("sightings.csv")) {
+    recording.sightings =
+        sightings_in(text("sightings.csv"), file("sightings.csv"), drive, may_lack);
+  }
+  if (has("survey.csv")) recording.survey = survey_in(text("survey.csv"), file("survey.csv"));
+  if (has("truth.csv")) recording.truth = truth_in(text("truth.csv"), file("truth.csv"));
+  if (has("fixes.csv")) recording.fixes = fixes_in(text("fixes.csv"), file("fixes.csv"));
+  if (has("loops.csv")) recording.loops = loops_in(text("loops.csv"), file("loops.csv"), drive);
+  return recording;
+}
+
 }  // namespace
+
+bool is_covariate_name(std::string_view name) {
+  return is_name(name) && !is_reserved(name);
+}
+
+std::vector<SurveyPoint> read_survey(const fs::path& file) {
+  return survey_in(read_file(file), file.string());
+}
 
 Recording read_recording(const fs::path& folder, bool drive_alone) {
   std::error_code ignored;
-  if (!fs::exists(folder, ignored)) {
+  if (!is_present(folder)) {
     throw InputError(folder.string(), 0, "there is no such folder, expected a recording");
   }
   if (!fs::is_directory(folder, ignored)) {
     throw InputError(folder.string(), 0, "is a file, expected a recording's folder");
   }
-  const auto has = [&](const char* name) { return fs::exists(folder / name, ignored); };
-  if (!has("drive.csv")) {
-    throw InputError((folder / "drive.csv").string(), 0, "is missing, a recording needs it");
-  }
-  const bool may_lack = has("truth.csv") || has("fixes.csv") || has("loops.csv");
-  if (!has("sightings.csv") && !may_lack && !drive_alone) {
-    throw InputError((folder / "sightings.csv").string(), 0,
-                     "is missing, a recording without truth.csv, fixes.csv or loops.csv needs it");
-  }
-  Recording recording;
-  recording.name = folder.string();
-  recording.drive = read_drive(folder / "drive.csv");
-  if (has("sightings.csv")) {
-    recording.sightings = read_sightings(folder / "sightings.csv", recording.drive, may_lack);
-  }
-  if (has("survey.csv")) recording.survey = read_survey(folder / "survey.csv");
-  if (has("truth.csv")) recording.truth = read_truth(folder / "truth.csv");
-  if (has("fixes.csv")) recording.fixes = read_fixes(folder / "fixes.csv");
-  if (has("loops.csv")) recording.loops = read_loops(folder / "loops.csv", recording.drive);
-  return recording;
+  const Streams streams{[&](const char* name) { return is_present(folder / name); },
+                        [&](const char* name) { return read_file(folder / name); }};
+  return recording_of(folder, streams, drive_alone);
+}
+
+Recording recording_in(const NamedTexts& files, bool drive_alone) {
+  const auto find = [&](const char* name) {
+    return std::find_if(files.begin(), files.end(),
+                        [&](const auto& file) { return file.first == name; });
+  };
+  const Streams streams{[&](const char* name) { return find(name) != files.end(); },
+                        [&](const char* name) { return find(name)->second; }};
+  return recording_of("", streams, drive_alone);
 }
 
 }  // namespace trussmap

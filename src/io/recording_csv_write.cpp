@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "io/csv.hpp"
+#include "io/model_text.hpp"
+#include "io/recording_streams.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
@@ -120,6 +122,24 @@ std::string loops_text(const std::vector<Loop>& loops) {
   return text;
 }
 
+/// By the readers of what is written, before anything is.
+void require_readable(const FolderOfFiles& whole, const Recording& recording) {
+  NamedTexts files = whole.files;
+  // A drive alone is for who reads it as such; its sightings.csv says that they are missing.
+  const bool alone = recording.sightings.empty();
+  if (alone) std::erase_if(files, [](const auto& file) { return file.first == "sightings.csv"; });
+  try {
+    static_cast<void>(recording_in(files, alone));
+    for (const auto& [name, text] : files) {
+      if (name == "model.toml") static_cast<void>(model_from_text(text, name));
+    }
+  } catch (const InputError& error) {
+    const std::string from = recording.name.empty() ? whole.folder.string() : recording.name;
+    throw InputError(
+        from, 0, std::string("makes a recording that could not be read again: ") + error.what());
+  }
+}
+
 }  // namespace
 
 FolderOfFiles recording_folder(const fs::path& folder, const Recording& recording,
@@ -139,6 +159,7 @@ FolderOfFiles recording_folder(const fs::path& folder, const Recording& recordin
   if (!recording.fixes.empty()) whole.files.emplace_back("fixes.csv", fixes_text(recording.fixes));
   if (!recording.loops.empty()) whole.files.emplace_back("loops.csv", loops_text(recording.loops));
   for (auto& file : beside) whole.files.push_back(std::move(file));
+  require_readable(whole, recording);
   // An earlier recording's stream in the same folder would be taken for this one's.
   for (const char* name : {"sightings.csv", "survey.csv", "truth.csv", "fixes.csv", "loops.csv"}) {
     const bool written = std::any_of(whole.files.begin(), whole.files.end(),

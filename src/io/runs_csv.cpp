@@ -62,7 +62,7 @@ void require_shorter(const CsvReader& table, const std::string& name, double val
 bool turns_right(const CsvReader& table, int column) {
   const std::string_view sense = table.field(column);
   if (sense != "cw" && sense != "ccw") {
-    table.fail("direction is \"" + std::string(sense) + "\", expected cw or ccw");
+    table.fail("direction is " + shown_field(sense) + ", expected cw or ccw");
   }
   return sense == "cw";
 }

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "files/present.hpp"
 #include "io/mat_columns.hpp"
 #include "io/number_rows.hpp"
+#include "io/recording_limits.hpp"
 #include "io/truck_trees.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"
@@ -47,7 +49,7 @@ std::vector<BodyStep> steps_of(const Drive& drive) {
 }  // namespace
 
 bool is_steered_truck(const fs::path& prefix) {
-  return fs::exists(drive_file(prefix)) || fs::exists(fixes_file(prefix));
+  return is_present(drive_file(prefix)) || is_present(fixes_file(prefix));
 }
 
 TruckRecording read_steered_truck(const fs::path& prefix) {
@@ -78,6 +80,8 @@ TruckRecording read_steered_truck(const fs::path& prefix) {
     recording.drive.t.push_back(1e-3 * (time[k] - time[0]));
     recording.drive.covariates[0].values.push_back(speed[k - 1] * 1e-3 * (time[k] - time[k - 1]));
     recording.drive.covariates[1].values.push_back(steering[k - 1]);
+    SourceLine(driven.string() + ", row " + std::to_string(k + 1), 0)
+        .expect_last_row(recording.drive);
   }
   if (recording.drive.rows() < 2) {
     throw InputError(driven.string(), 0, "has fewer than three rows, expected a drive");
@@ -93,6 +97,8 @@ TruckRecording read_steered_truck(const fs::path& prefix) {
       continue;
     }
     recording.fixes.push_back({1e-3 * (stamped[k] - time[0]), east[k], north[k]});
+    SourceLine(received.string() + ", row " + std::to_string(k + 1), 0)
+        .expect(recording.fixes.back());
   }
   const fs::path graph = graph_file(prefix);
   if (!graph.empty()) {

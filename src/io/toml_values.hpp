@@ -31,6 +31,9 @@ struct TomlFault {
 [[nodiscard]] double toml_length(const toml::node& node, const std::string& name);
 [[nodiscard]] double toml_spread(const toml::node& node, const std::string& name);
 
+/// Why a file is no TOML.
+[[nodiscard]] std::string toml_fault(const toml::parse_error& error);
+
 /// -0 would be read as a whole number, without its sign.
 [[nodiscard]] std::string toml_number(double value);
 

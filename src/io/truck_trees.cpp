@@ -3,6 +3,7 @@
 #include "io/truck_trees.hpp"
 
 #include "geometry/index.hpp"
+#include "io/recording_limits.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/pose_graph.hpp"
@@ -111,6 +112,7 @@ int take_trees(const std::filesystem::path& graph, const std::vector<BodyStep>& 
     recording.sightings.push_back({t, std::to_string(read.vertices[idx(edge.point)].id - last - 1),
                                    edge.measured.norm(),
                                    std::atan2(edge.measured.y(), edge.measured.x())});
+    SourceLine(file, 0).expect(recording.sightings.back());
   }
   std::stable_sort(recording.sightings.begin(), recording.sightings.end(),
                    [](const Sighting& a, const Sighting& b) { return a.t < b.t; });

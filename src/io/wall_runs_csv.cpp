@@ -19,7 +19,7 @@ Faces faces_of(const CsvReader& table, int column) {
   if (text == "left") return Faces::left;
   if (text == "behind") return Faces::behind;
   if (text == "right") return Faces::right;
-  table.fail("faces is \"" + std::string(text) + "\", expected ahead, left, behind or right");
+  table.fail("faces is " + shown_field(text) + ", expected ahead, left, behind or right");
 }
 
 /// The columns of a run that starts and ends in a corner.

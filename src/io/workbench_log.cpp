@@ -157,8 +157,10 @@ WorkbenchLog read_workbench_log(const std::filesystem::path& path,
       throw InputError(file, 0, fmt::format("is at step {}, of {}", log.at, log.steps.size()));
     }
     return log;
-  } catch (const ordered_json::exception& error) {
-    throw InputError(file, 0, fmt::format("no log of a workbench: {}", error.what()));
+  } catch (const ordered_json::exception&) {
+    throw InputError(file, 0,
+                     "no log of a workbench: a value is missing or of a wrong kind, expected it as "
+                     "trussmap serve wrote it");
   }
 }
 

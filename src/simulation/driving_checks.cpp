@@ -46,8 +46,8 @@ void check_style(const DrivingStyle& style) {
   require(std::isfinite(style.standing) && style.standing >= 0.0,
           "how exactly the robot stands on a landmark must be 0 m or more");
   for (const double value : {style.first_rest, style.last_rest, style.overrun, style.ramp}) {
-    require(std::isfinite(value) && value >= 0.0,
-            "a rest, an overrun and a ramp must be 0 or more, in s, m and s");
+    require(value >= 0.0 && value <= 1e5,
+            "a rest, an overrun and a ramp must lie between 0 and 1e5, in s, m and s");
   }
 }
 

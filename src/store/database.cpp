@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "store/database.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <sqlite3.h>
 #include <system_error>
@@ -27,7 +28,56 @@ std::string immutable(const std::filesystem::path& file) {
   return uri + "?immutable=1";
 }
 
+/// What SQLite means, in words of this project; its own may be of tables and statements.
+std::string said_by_code(int code) {
+  switch (code & 0xff) {
+    case SQLITE_CANTOPEN:
+      return "the file cannot be opened";
+    case SQLITE_PERM:
+    case SQLITE_AUTH:
+    case SQLITE_READONLY:
+      return "the file or its folder cannot be written";
+    case SQLITE_CORRUPT:
+      return "its pages are damaged";
+    case SQLITE_FULL:
+      return "the disk is full";
+    case SQLITE_IOERR:
+      return "the disk fails, or is full";
+    case SQLITE_NOMEM:
+      return "there is not enough memory";
+    case SQLITE_TOOBIG:
+      return "a cell is too large";
+    case SQLITE_CONSTRAINT:
+      return "a row breaks the rules of its table";
+    case SQLITE_NOTADB:
+      return "it is no database";
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return "another program holds it";
+    case SQLITE_ERROR:
+      return "a table or column is not as expected";
+    default:
+      return "the database fails (" + std::to_string(code) + ")";
+  }
+}
+
+/// SQLite's kind of a cell, in words.
+const char* kind_in_words(int type) {
+  switch (type) {
+    case SQLITE_INTEGER:
+      return "a whole number";
+    case SQLITE_FLOAT:
+      return "a number that is not whole";
+    case SQLITE_TEXT:
+      return "text";
+    default:
+      return "bytes";
+  }
+}
+
 }  // namespace
+
+DatabaseError::DatabaseError(int code) : std::runtime_error(said_by_code(code)), code_(code) {}
 
 bool DatabaseError::busy() const {
   return (code_ & 0xff) == SQLITE_BUSY || (code_ & 0xff) == SQLITE_LOCKED;
@@ -37,7 +87,7 @@ bool DatabaseError::no_database() const {
   return (code_ & 0xff) == SQLITE_NOTADB;
 }
 
-Statement::Statement(const Database& database, const std::string& sql) : database_(&database) {
+Statement::Statement(const Database& database, const std::string& sql) {
   sqlite3_stmt* statement = nullptr;
   const int code = sqlite3_prepare_v3(database.handle(), sql.c_str(), static_cast<int>(sql.size()),
                                       SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
@@ -49,9 +99,9 @@ void Statement::Finalize::operator()(sqlite3_stmt* statement) const noexcept {
   sqlite3_finalize(statement);
 }
 
-void Statement::check(int code) const {
+void Statement::check(int code) {
   if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE) return;
-  throw DatabaseError(code, sqlite3_errmsg(database_->handle()));
+  throw DatabaseError(code);
 }
 
 Statement& Statement::bind(int place, double value) {
@@ -79,9 +129,8 @@ Statement& Statement::bind_bytes(int place, const std::string& bytes) {
 bool Statement::step() {
   const int code = sqlite3_step(statement_.get());
   if (code != SQLITE_ROW && code != SQLITE_DONE) {
-    const DatabaseError error(code, sqlite3_errmsg(database_->handle()));
     reset();
-    throw error;
+    throw DatabaseError(code);
   }
   return code == SQLITE_ROW;
 }
@@ -97,21 +146,32 @@ void Statement::reset() noexcept {
   sqlite3_clear_bindings(statement_.get());
 }
 
+void Statement::expect(int column, std::initializer_list<int> types, const char* expected) const {
+  const int type = sqlite3_column_type(statement_.get(), column);
+  if (type == SQLITE_NULL || std::find(types.begin(), types.end(), type) != types.end()) return;
+  throw DamagedCell(std::string(kind_in_words(type)) + " in column " +
+                    sqlite3_column_name(statement_.get(), column) + ", expected " + expected);
+}
+
 double Statement::real(int column) const {
+  expect(column, {SQLITE_FLOAT, SQLITE_INTEGER}, "a number");
   return sqlite3_column_double(statement_.get(), column);
 }
 
 std::int64_t Statement::integer(int column) const {
+  expect(column, {SQLITE_INTEGER}, "a whole number");
   return sqlite3_column_int64(statement_.get(), column);
 }
 
 std::string Statement::text(int column) const {
+  expect(column, {SQLITE_TEXT}, "text");
   const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
   const int size = sqlite3_column_bytes(statement_.get(), column);
   return text == nullptr ? std::string() : std::string(text, static_cast<std::size_t>(size));
 }
 
 std::string Statement::bytes(int column) const {
+  expect(column, {SQLITE_BLOB}, "bytes");
   const void* bytes = sqlite3_column_blob(statement_.get(), column);
   const int size = sqlite3_column_bytes(statement_.get(), column);
   return bytes == nullptr
@@ -132,7 +192,7 @@ Database::Database(const std::filesystem::path& file, Access access) {
       !std::filesystem::exists(log, ignored) || std::filesystem::is_empty(log, ignored);
   if (access == Access::read && no_log && ::access(file.parent_path().c_str(), W_OK) != 0) {
     if (const int code = open(immutable(file), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI)) {
-      throw DatabaseError(code, "unable to open database file");
+      throw DatabaseError(code);
     }
     return;
   }
@@ -141,7 +201,7 @@ Database::Database(const std::filesystem::path& file, Access access) {
   int code = open(file.string(), write);
   if (code != SQLITE_OK && access == Access::read) code = open(file.string(), SQLITE_OPEN_READONLY);
   if (code != SQLITE_OK) {
-    throw DatabaseError(code, handle() != nullptr ? sqlite3_errmsg(handle()) : "out of memory");
+    throw DatabaseError(code);
   }
   sqlite3_extended_result_codes(handle(), 1);
   sqlite3_busy_timeout(handle(), kPatience);
@@ -161,7 +221,7 @@ void Database::Close::operator()(sqlite3* database) const noexcept {
 
 void Database::run(const std::string& sql) const {
   const int code = sqlite3_exec(handle(), sql.c_str(), nullptr, nullptr, nullptr);
-  if (code != SQLITE_OK) throw DatabaseError(code, sqlite3_errmsg(handle()));
+  if (code != SQLITE_OK) throw DatabaseError(code);
 }
 
 std::int64_t Database::number(const std::string& sql) const {
@@ -171,10 +231,10 @@ std::int64_t Database::number(const std::string& sql) const {
 
 void Database::take_over(const Database& other) const {
   sqlite3_backup* const backup = sqlite3_backup_init(handle(), "main", other.handle(), "main");
-  if (backup == nullptr) throw DatabaseError(sqlite3_errcode(handle()), sqlite3_errmsg(handle()));
+  if (backup == nullptr) throw DatabaseError(sqlite3_errcode(handle()));
   const int code = sqlite3_backup_step(backup, -1);
   sqlite3_backup_finish(backup);
-  if (code != SQLITE_DONE) throw DatabaseError(code, sqlite3_errmsg(handle()));
+  if (code != SQLITE_DONE) throw DatabaseError(code);
 }
 
 bool Database::in_transaction() const {

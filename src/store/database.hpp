@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -19,12 +20,19 @@ namespace trussmap {
 
 class DatabaseError : public std::runtime_error {
  public:
-  DatabaseError(int code, const std::string& what) : std::runtime_error(what), code_(code) {}
+  /// Says what the code means.
+  explicit DatabaseError(int code);
   [[nodiscard]] bool busy() const;
   [[nodiscard]] bool no_database() const;
 
  private:
   int code_;  ///< SQLite's
+};
+
+/// A cell that holds another kind of value than its column: "text in column dx, expected a number".
+class DamagedCell : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
 };
 
 class Database;
@@ -49,6 +57,7 @@ class Statement final : public RowReader, public RowWriter {
   void run();
   void reset() noexcept;
 
+  /// 0 or nothing where the cell is null; DamagedCell where it is of another kind.
   [[nodiscard]] double real(int column) const override;
   [[nodiscard]] std::int64_t integer(int column) const override;
   [[nodiscard]] std::string text(int column) const override;
@@ -59,9 +68,9 @@ class Statement final : public RowReader, public RowWriter {
   struct Finalize {
     void operator()(sqlite3_stmt* statement) const noexcept;
   };
-  void check(int code) const;
+  static void check(int code);
+  void expect(int column, std::initializer_list<int> types, const char* expected) const;
 
-  const Database* database_;
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
 };
 

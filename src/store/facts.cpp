@@ -45,6 +45,21 @@ class OptionFacts final : public RowReader, public RowWriter {
   std::vector<std::string> names_;
 };
 
+/// A query of one fact, ready for the next one in the end.
+class Asked {
+ public:
+  Asked(Statement& get, const std::string& name) : get_(get), there_(get.bind(0, name).step()) {}
+  ~Asked() { get_.reset(); }
+  Asked(const Asked&) = delete;
+  Asked& operator=(const Asked&) = delete;
+
+  [[nodiscard]] bool there() const { return there_; }
+
+ private:
+  Statement& get_;
+  bool there_;
+};
+
 }  // namespace
 
 Facts::Facts(const Database& database)
@@ -52,17 +67,13 @@ Facts::Facts(const Database& database)
       put_(database, "REPLACE INTO facts VALUES (?, ?)") {}
 
 std::string Facts::text(const std::string& name) {
-  get_.bind(0, name);
-  std::string value = get_.step() ? get_.text(0) : std::string();
-  get_.reset();
-  return value;
+  const Asked asked(get_, name);
+  return asked.there() ? get_.text(0) : std::string();
 }
 
 double Facts::real(const std::string& name) {
-  get_.bind(0, name);
-  const double value = get_.step() ? get_.real(0) : 0.0;
-  get_.reset();
-  return value;
+  const Asked asked(get_, name);
+  return asked.there() ? get_.real(0) : 0.0;
 }
 
 void create_facts_table(const Database& database) {

@@ -3,6 +3,7 @@
 #include "store/leg_rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -26,6 +27,13 @@ Arrival::Kind outcome_of(std::int64_t number) {
 /// -1: null.
 std::int64_t number_in(const RowReader& row, int column) {
   return row.is_null(column) ? -1 : row.integer(column);
+}
+
+/// 0 where there is none: of which legs have what, their kind tells.
+double figure_at(const RowReader& row, int column) {
+  const double value = row.real(column);
+  if (!std::isfinite(value)) throw std::invalid_argument("a leg that is not finite");
+  return value;
 }
 
 std::string landmark_in(const RowReader& row, int column, const LandmarkGraph& graph) {
@@ -71,19 +79,19 @@ void put_leg(RowWriter& row, const BuilderCall& call, std::int64_t number,
 
 StoredLeg leg_in(const RowReader& row, std::int64_t number, const LandmarkGraph& graph,
                  std::int64_t sessions) {
+  const auto at = [&row](int column) { return figure_at(row, column); };
   if (row.integer(0) != number) throw std::invalid_argument("a leg that is misnumbered");
   StoredLeg one;
   one.kind = kind_of(row.integer(2));
   one.from = landmark_in(row, 3, graph);
   one.to = landmark_in(row, 4, graph);
   one.own_axes = row.integer(5) != 0;
-  one.leg.displacement = {row.real(6), row.real(7)};
-  one.leg.covariance << row.real(9), row.real(10), row.real(10), row.real(11);
-  one.motion.displacement = {row.real(6), row.real(7), row.real(8)};
-  one.motion.covariance << one.leg.covariance, Vector2(row.real(12), row.real(13)), row.real(12),
-      row.real(13), row.real(14);
-  one.seen.offset_robot = {row.real(15), row.real(16)};
-  one.seen.covariance_robot << row.real(17), row.real(18), row.real(18), row.real(19);
+  one.leg.displacement = {at(6), at(7)};
+  one.leg.covariance << at(9), at(10), at(10), at(11);
+  one.motion.displacement = {at(6), at(7), at(8)};
+  one.motion.covariance << one.leg.covariance, Vector2(at(12), at(13)), at(12), at(13), at(14);
+  one.seen.offset_robot = {at(15), at(16)};
+  one.seen.covariance_robot << at(17), at(18), at(18), at(19);
   const std::int64_t session = number_in(row, 1);
   if (session >= sessions) throw std::invalid_argument("a leg of no session");
   one.session = static_cast<int>(std::max<std::int64_t>(session, -1));

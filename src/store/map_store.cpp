@@ -25,7 +25,10 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
   /// `first`: what a new store begins with; null: with nothing, or go on.
   Impl(const fs::path& file, const std::optional<MapBuilderOptions>& options,
        const MapBuilderOptions& if_new, const MapBuilder* first)
-      : file_(file), lock_(lock_store(file)), database_(open(first != nullptr)) {
+      : file_(file),
+        lock_(lock_store(file)),
+        fresh_(place_of_store(file)),
+        database_(open(first != nullptr)) {
     database_.run("BEGIN IMMEDIATE");
     if (!is_store(file_, database_)) {
       create_store(database_, options.value_or(if_new));
@@ -42,6 +45,7 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
     version_ = database_.number("PRAGMA data_version");
     load();
     if (options) take(*options);
+    fresh_.keep();
   }
 
   /// Makes calls of the builder; they are kept, or the builder is as it was.
@@ -231,6 +235,7 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
 
   fs::path file_;
   std::unique_ptr<FileLock> lock_;
+  FreshFile fresh_;
   Database database_;
   std::optional<MemoryRows> rows_;
   std::optional<Facts> facts_;

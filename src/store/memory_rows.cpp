@@ -4,9 +4,12 @@
 
 #include "geometry/index.hpp"
 #include "text/number_text.hpp"
+#include "text/plain_text.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -25,12 +28,25 @@ class DatabaseTables final : public MemoryTables {
     const std::string first = columns.substr(0, columns.find(','));
     Statement rows(database_,
                    joined("SELECT ", columns, " FROM ", table.name, " ORDER BY ", first));
-    while (rows.step()) visit(rows);
+    for (std::int64_t row = 1; rows.step(); ++row) {
+      try {
+        visit(rows);
+      } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(joined(error.what(), " (row ", row, " of ", table.name, ")"));
+      }
+    }
   }
 
  private:
   const Database& database_;
 };
+
+/// A name that is shown to people, and that files of maps can hold.
+void check_name(const std::string& name) {
+  if (!name.empty() && is_plain_text(name)) return;
+  throw std::invalid_argument(
+      "a landmark whose name is empty or holds a control character, expected printable text");
+}
 
 bool same(const Average& a, const Average& b) {
   return a.count == b.count && a.mean == b.mean && a.variance == b.variance;
@@ -121,6 +137,7 @@ BuilderMemory MemoryRows::load(const MapBuilderOptions& options) {
   written_ = {};
   BuilderMemory memory = load_memory(tables, options);
   for (int k = 0; k < memory.graph.landmarks(); ++k) {
+    check_name(memory.graph.landmark(k).name);
     written_.positions.push_back(memory.graph.landmark(k).position);
     written_.roots.push_back(root_of(memory, k));
   }
@@ -150,6 +167,7 @@ void MemoryRows::save_landmarks(const BuilderMemory& memory) {
     const Vector2& at = memory.graph.landmark(k).position;
     const int root = root_of(memory, k);
     if (idx(k) >= written_.positions.size()) {
+      check_name(memory.graph.landmark(k).name);
       put_landmark(put_landmark_, memory, k);
       put_landmark_.run();
       written_.positions.push_back(at);

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "files/present.hpp"
 #include "store/facts.hpp"
 #include "store/first_version.hpp"
 #include "store/leg_rows.hpp"
@@ -19,12 +20,7 @@ namespace fs = std::filesystem;
 template <typename Read>
 auto reading(const fs::path& file, const Read& read) {
   return naming_store(file, [&] {
-    std::error_code failed;
-    if (!fs::exists(file, failed)) {
-      throw InputError(
-          file.string(), 0,
-          "cannot be opened" + (failed ? ": " + failed.message() : "") + ", expected a map store");
-    }
+    if (!is_present(file)) throw InputError(file.string(), 0, "is missing, expected a map store");
     const Database database(place_of_store(file), Database::Access::read);
     database.run("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; BEGIN");
     if (!is_store(file, database)) {

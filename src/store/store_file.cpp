@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <system_error>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -48,6 +49,21 @@ fs::path place_of_store(const fs::path& file) {
   const std::uintmax_t size = fs::file_size(place, failed);
   if (!failed && size > 0 && size < kHeader) throw InputError(file.string(), 0, "is no map store");
   return place;
+}
+
+FreshFile::FreshFile(fs::path place, bool made) : place_(std::move(place)) {
+  std::error_code ignored;
+  goes_ = made || !fs::exists(fs::symlink_status(place_, ignored));
+}
+
+FreshFile::~FreshFile() {
+  if (!goes_) return;
+  for (const char* ending : {"", "-wal", "-shm", "-journal"}) {
+    fs::path file = place_;
+    file += ending;
+    std::error_code ignored;
+    fs::remove(file, ignored);
+  }
 }
 
 std::unique_ptr<FileLock> lock_store(const fs::path& file) {

@@ -29,6 +29,23 @@ namespace trussmap {
 [[nodiscard]] InputError said_of_store(const std::filesystem::path& file,
                                        const DatabaseError& error);
 
+/// A store's file while it is being made: it goes again, with what SQLite lays beside it, unless it
+/// is kept, or was there before. For who holds the store's lock.
+class FreshFile {
+ public:
+  /// `made`: it is there already, and goes all the same.
+  explicit FreshFile(std::filesystem::path place, bool made = false);
+  ~FreshFile();
+  FreshFile(const FreshFile&) = delete;
+  FreshFile& operator=(const FreshFile&) = delete;
+
+  void keep() { goes_ = false; }
+
+ private:
+  std::filesystem::path place_;
+  bool goes_;
+};
+
 /// Calls something; what the database throws becomes an InputError.
 template <typename Call>
 auto naming_store(const std::filesystem::path& file, const Call& call) {
@@ -36,6 +53,8 @@ auto naming_store(const std::filesystem::path& file, const Call& call) {
     return call();
   } catch (const DatabaseError& error) {
     throw said_of_store(file, error);
+  } catch (const DamagedCell& error) {
+    throw InputError(file.string(), 0, std::string("is damaged: it has ") + error.what());
   }
 }
 

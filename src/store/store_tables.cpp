@@ -6,6 +6,7 @@
 #include "store/first_version.hpp"
 #include "store/leg_rows.hpp"
 #include "store/memory_rows.hpp"
+#include "store/schema.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 
@@ -20,28 +21,9 @@ constexpr std::int64_t kApplication = 0x7472736d;  // "trsm"
 constexpr std::int64_t kVersion = 2;
 constexpr std::int64_t kFirstVersion = 1;
 
-/// Blanks and ends of lines as one blank each.
-std::string on_one_line(const std::string& text) {
-  std::string line;
-  for (const char c : text) {
-    const bool blank = c == ' ' || c == '\n';
-    if (!blank || line.empty() || line.back() != ' ') line += blank ? ' ' : c;
-  }
-  return line;
-}
-
-/// How the store's tables were made, and all triggers. Statements in either could do anything.
 std::vector<std::string> tables_of(const Database& database) {
-  Statement rows(
-      database,
-      "SELECT type || ' ' || name || ' ' || ifnull(sql, '') FROM sqlite_schema "
-      "WHERE type = 'trigger' OR tbl_name COLLATE NOCASE IN ('facts', 'sessions', "
-      "'legs', 'landmarks', 'routes', 'reckoned', 'corners', 'chain', 'misfits', 'left_out', "
-      "'state', 'map') "
-      "ORDER BY 1");
-  std::vector<std::string> tables;
-  while (rows.step()) tables.push_back(on_one_line(rows.text(0)));
-  return tables;
+  return schema_of(database, {"facts", "sessions", "legs", "landmarks", "routes", "reckoned",
+                              "corners", "chain", "misfits", "left_out", "state", "map"});
 }
 
 /// A new store's.

@@ -4,6 +4,7 @@
 
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_start.hpp"
+#include "fit/along_paths.hpp"
 #include "recording/time_spans.hpp"
 
 #include <algorithm>
@@ -34,13 +35,7 @@ std::set<int> loose_poses(const std::vector<DrivenRecording>& recordings, const 
   const std::vector<int> untied = untied_poses(problem);
   if (!untied.empty()) return {untied.begin(), untied.end()};
   const std::map<std::string, Vector2> places = landmark_places(fit);
-  RecordingState state;
-  for (const std::string& name : problem.landmarks) state.landmarks.push_back(places.at(name));
-  for (const PoseNode& node : problem.poses) {
-    const std::size_t session = idx(node.session);
-    state.poses.push_back(pose_at(recordings[session].drive, fit.paths[session], node.t));
-  }
-  state.orientations = orientations_seen_from(problem, state.poses);
+  const RecordingState state = along_paths(problem, recordings, fit.paths, places);
   const EffectParameters no_effects;
   RecordingSystem system(problem, no_effects);
   system.linearise(state, Eigen::VectorXd());

@@ -6,12 +6,18 @@
 #include "scratch_folder.hpp"
 #include "trussmap/model_file.hpp"
 
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <random>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <sys/resource.h>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -19,6 +25,7 @@
 namespace trussmap::serve_command_test {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HttpAnswer;
 using testing::Ran;
@@ -318,6 +325,115 @@ TEST(ServeCommand, OtherWorkIsNotGoneOnWith) {
       run_trussmap("serve " + kRiddle + " --no-browser --model " + model.string() + " --port 70000")
           .status,
       2);
+}
+
+json add_of(const ServedBench& bench, const json& status, const std::string& id) {
+  return {{"version", status.at("version")},
+          {"do", "add"},
+          {"finding", finding_named(bench.state(), id)}};
+}
+
+TEST(ServeCommand, AStepThatCannotBeWrittenIsTakenBack) {
+  const ScratchFolder scratch;
+  const ServedBench bench(riddle(scratch));
+  const json first = bench.settled();
+  const fs::path work = scratch.path() / "work";
+  fs::rename(work, scratch.path() / "aside");
+  scratch.write("work", "a file in the folder's place");
+  EXPECT_EQ(bench.post("step", add_of(bench, first, "hard iron").dump()).status, 202);
+  const json failed = bench.settled();
+  EXPECT_NE(failed.at("failed").get<std::string>(), "");
+  EXPECT_EQ(bench.state().at("steps").size(), 1U);
+  fs::remove(work);
+  fs::rename(scratch.path() / "aside", work);
+  // The same step again, not a second one: the first is not in memory either.
+  EXPECT_EQ(bench.post("step", add_of(bench, failed, "hard iron").dump()).status, 202);
+  EXPECT_EQ(bench.settled().at("failed"), "");
+  EXPECT_EQ(bench.state().at("steps").size(), 2U);
+}
+
+TEST(ServeCommand, AFolderThatCannotBeWrittenEndsItAtOnce) {
+  const ScratchFolder scratch;
+  scratch.write("file", "no folder");
+  const std::string work = (scratch.path() / "file" / "work").string();
+  const Ran ran = run_trussmap("serve " + kRiddle + " --no-browser --model " + kRiddle +
+                               "/model.toml --work " + work);
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.output.find(work + ": cannot be written"), std::string::npos) << ran.output;
+}
+
+/// The browser gets a page that its user alone may read, and no secret by its command line.
+TEST(ServeCommand, TheTokenIsOnNoCommandLine) {
+  const ScratchFolder scratch;
+  const fs::path opened = scratch.path() / "opened";
+  fs::permissions(
+      scratch.write("xdg-open", "#!/bin/sh\necho \"$@\" > " + opened.string() + ".part\nmv " +
+                                    opened.string() + ".part " + opened.string() + "\n"),
+      fs::perms::owner_all);
+  const testing::ChildProcess child([&] {
+    ::setenv("PATH", (scratch.path().string() + ":/usr/bin:/bin").c_str(), 1);
+    ::setenv("DISPLAY", ":0", 1);
+    std::vector<std::string> words{testing::command_path(), "serve"};
+    for (const std::string& word : riddle(scratch)) words.push_back(word);
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    ::freopen((scratch.path() / "said").c_str(), "w", stdout);
+    ::execv(pointers.front(), pointers.data());
+  });
+  for (int k = 0; k < 1000 && !fs::exists(opened); ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  std::string argument;
+  std::getline(std::ifstream(opened) >> std::ws, argument);
+  std::string address;
+  std::getline(std::ifstream(scratch.path() / "said") >> std::ws, address);
+  ASSERT_EQ(address.rfind("http://127.0.0.1:", 0), 0U) << address;
+  EXPECT_EQ(argument.find("http"), std::string::npos) << argument;
+  ASSERT_TRUE(fs::exists(argument)) << argument;
+  EXPECT_EQ(fs::status(argument).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  std::ostringstream page;
+  page << std::ifstream(argument).rdbuf();
+  EXPECT_NE(page.str().find("url=" + address + "\""), std::string::npos) << page.str();
+}
+
+int half_a_request(std::uint16_t port) {
+  const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in place{};
+  place.sin_family = AF_INET;
+  place.sin_port = htons(port);
+  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (::connect(socket, reinterpret_cast<sockaddr*>(&place), sizeof(place)) != 0) return -1;
+  const std::string half = "GET / HTTP/1.1\r\nHost: ";
+  static_cast<void>(::send(socket, half.data(), half.size(), MSG_NOSIGNAL));
+  return socket;
+}
+
+/// Whether the other side closes it within so many ms.
+bool is_closed_within(int socket, int wait) {
+  pollfd ready{socket, POLLIN, 0};
+  char byte = 0;
+  return ::poll(&ready, 1, wait) > 0 && ::recv(socket, &byte, 1, MSG_DONTWAIT) <= 0;
+}
+
+TEST(SlowServeCommand, NobodyKeepsTheOwnerOut) {
+  const ScratchFolder scratch;
+  rlimit files{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &files), 0);
+  if (files.rlim_max < 2000) GTEST_SKIP() << "too few open files are allowed: " << files.rlim_max;
+  files.rlim_cur = std::max<rlim_t>(files.rlim_cur, 2000);
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &files), 0);
+  const ServedBench bench(riddle(scratch));
+  static_cast<void>(bench.settled());
+  std::vector<int> sockets;
+  for (int k = 0; k < 1000; ++k) sockets.push_back(half_a_request(bench.port()));
+  const auto begun = std::chrono::steady_clock::now();
+  EXPECT_EQ(bench.get("status").status, 200);
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(1));
+  EXPECT_TRUE(is_closed_within(sockets.front(), 1000));  // the oldest went first
+  EXPECT_FALSE(is_closed_within(sockets.back(), 0));
+  EXPECT_TRUE(is_closed_within(sockets.back(), 7000));  // and none lasts
+  for (const int socket : sockets) ::close(socket);
 }
 
 }  // namespace

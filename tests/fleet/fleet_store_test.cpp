@@ -4,12 +4,15 @@
 // Stores of fleets: nothing is lost, and shards merge to the same whatever their order.
 #include "child_process.hpp"
 #include "scratch_folder.hpp"
+#include "store/database.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/fleet.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <filesystem>
 #include <functional>
+#include <limits>
+#include <stdexcept>
 #include <string>
 #include <unistd.h>
 #include <vector>
@@ -74,6 +77,52 @@ TEST(FleetStore, ADayIsReplacedOnlyOnWish) {
   other.model = "other";
   expect_complaint([&] { add_to_fleet(file, other); }, "another model");
   EXPECT_EQ(read_fleet(file).size(), 1U);
+}
+
+/// What somebody else's SQLite may have put into the file.
+TEST(FleetStore, OtherTablesAndDamagedCellsAreRefused) {
+  const ScratchFolder scratch;
+  const auto file = scratch.path() / "fleet.db";
+  add_to_fleet(file, made_row("R1", "2026-03-01"));
+  add_to_fleet(file, made_row("R2", "2026-03-02"));
+  const std::string whole = read_file(file);
+  const auto refused = [&](const std::string& statements, const std::string& said) {
+    write_file(file, whole);
+    Database(file, Database::Access::write).run(statements);
+    expect_complaint([&] { static_cast<void>(read_fleet(file)); }, file.string() + ": " + said);
+    expect_complaint([&] { static_cast<void>(merge_fleets(scratch.path() / "out.db", {file})); },
+                     said);
+    EXPECT_FALSE(std::filesystem::exists(scratch.path() / "out.db"));
+  };
+  const std::string tables = "is damaged: its tables are not those of a fleet store";
+  refused("CREATE TRIGGER t AFTER INSERT ON days BEGIN DELETE FROM metadata; END", tables);
+  refused("ALTER TABLE days RENAME TO mine; CREATE VIEW days AS SELECT * FROM mine", tables);
+  refused("CREATE INDEX i ON days(hex(zeroblob(length(robot) * 1000000)))", tables);
+  const std::string second = "is a damaged fleet store: row 2 of days: ";
+  const auto damaged = [&](const std::string& set, const std::string& said) {
+    refused("UPDATE days SET " + set + " WHERE robot = 'R2'", second + said);
+  };
+  damaged("chi2 = 'many'", "text in column chi2, expected a number");
+  damaged("dof = 1.5", "a number that is not whole in column dof");
+  damaged("dof = -1", "a count is -1");
+  damaged("chi2 = 9e999", "a figure of the day is no number of 0 or more");
+  damaged("columns = x'00'", "bytes in column columns");
+  damaged("g = 'text'", "text in column g");
+  damaged("date = '2026-02-31'", "the day is none");
+  damaged("robot = 'R2' || char(27)", "the robot's name holds a control character");
+}
+
+TEST(FleetStore, WhatFailsLeavesNoFile) {
+  const ScratchFolder scratch;
+  const auto file = scratch.path() / "fleet.db";
+  EXPECT_THROW(add_to_fleet(file, made_row("a\nb", "2026-03-01")), std::invalid_argument);
+  FleetRow row = made_row("R1", "2026-03-01");
+  row.g[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(add_to_fleet(file, row), std::invalid_argument);
+  expect_complaint([&] { static_cast<void>(read_fleet(file)); }, "is missing");
+  EXPECT_TRUE(scratch.contents().empty());
+  add_to_fleet(file, made_row("R1", "2026-03-01"));
+  EXPECT_EQ(scratch.contents().size(), 1U);  // nothing beside it
 }
 
 TEST(FleetStore, WhoAddAtOnceLoseNothing) {

@@ -53,10 +53,11 @@ TEST(LineRobot, SaysWhatIsWrong) {
   };
   EXPECT_EQ(complaint("0,1,0.5,3.4\n0.1,1,0.5,3.4\n"),
             "dataset1.csv: has fewer than three rows, expected a drive");
-  EXPECT_EQ(complaint(kRows + "0.3,1,0,3\n"),
-            "dataset1.csv: time repeats or runs backwards at 0.3, expected rows in order of time");
+  EXPECT_EQ(
+      complaint(kRows + "0.3,1,0,3\n"),
+      "dataset1.csv:5: time repeats or runs backwards at 0.3, expected rows in order of time");
   EXPECT_EQ(complaint(kRows + "0.4,1,0,-3\n"),
-            "dataset1.csv: a negative range at time 0.4, expected 0 or more");
+            "dataset1.csv:5: a negative range at time 0.4, expected 0 or more");
   EXPECT_EQ(complaint(kRows + "0.4,1,0\n").substr(0, 15), "dataset1.csv:5:");
   EXPECT_EQ(complaint(kRows + "0.4,1,nan,3\n").substr(0, 15), "dataset1.csv:5:");
 }

@@ -55,7 +55,9 @@ TEST(OptiOdom, SaysWhatIsWrong) {
   EXPECT_EQ(complaint(scratch, "type,quad,\n", "0,0,0,0,0,0\n1,0,0,0,0,0\n"),
             "1_metadata.csv: the robot's type is \"quad\", expected diff, tricyc or omni3");
   EXPECT_EQ(complaint(scratch, "type,diff\nngear,x\n", "0,0,0,0,0,0\n1,0,0,0,0,0\n"),
-            "1_metadata.csv: ngear is \"x\", expected a positive number");
+            "1_metadata.csv: ngear is \"x\", expected a positive number, from 0.001 to 1e9");
+  EXPECT_EQ(complaint(scratch, "type,diff\nngear,1\nencRes,1e-320\n", "0,0,0,0,0,0\n1,0,0,0,0,0\n"),
+            "1_metadata.csv: encRes is \"1e-320\", expected a positive number, from 0.001 to 1e9");
   EXPECT_EQ(complaint(scratch, kMetadata, "0,0,0,0,0,0\n1,0,0,zero,0,0\n"),
             "1_run-01.csv:2: \"zero\", expected a finite number");
   EXPECT_EQ(complaint(scratch, kMetadata, "0,0,0,0,0,0\n1,0,0,0,0\n"),

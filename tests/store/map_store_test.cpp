@@ -569,6 +569,49 @@ TEST_F(MapStoreTest, OnesWithOtherTablesOrMisnumberedRowsAreRefused) {
   EXPECT_EQ(refusal("UPDATE legs SET session = 1"), ": is damaged: it has a leg of no session");
 }
 
+TEST_F(MapStoreTest, DamagedCellsAreNamedWithTheirRow) {
+  {
+    MapStore store(file_);
+    store.start("a");
+    store.arrive("b", Traversal{{1.0, 2.0}, 0.01 * Matrix2::Identity()});
+  }
+  const std::string whole = read_file(file_);
+  const auto refused = [&](const std::string& statement, const std::string& said) {
+    write_file(file_, whole);
+    Database(file_, Database::Access::write).run(statement);
+    try {
+      static_cast<void>(read_map_store(file_));
+      FAIL() << "read all the same: " << statement;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()), file_.string() + ": is damaged: it has " + said);
+    }
+  };
+  refused("UPDATE landmarks SET x = 'far' WHERE number = 1",
+          "text in column x, expected a number (row 2 of landmarks)");
+  refused("UPDATE routes SET traversals = 1.5",
+          "a number that is not whole in column traversals, expected a whole number (row 1 of "
+          "routes)");
+  refused("UPDATE landmarks SET name = 'b' || char(10) WHERE number = 1",
+          "a landmark whose name is empty or holds a control character, expected printable text");
+}
+
+TEST_F(MapStoreTest, WhatFailsLeavesNoFile) {
+  {
+    MapStore store(file_);
+    store.start("a");
+  }
+  LandmarkGraph map;
+  map.add_landmark("a\nb", {0.0, 0.0});
+  const fs::path other = scratch_.path() / "other.db";
+  EXPECT_THROW(static_cast<void>(MapStore::create(other, map)), std::invalid_argument);
+  EXPECT_FALSE(fs::exists(other));
+  EXPECT_FALSE(fs::exists(other.string() + "-wal"));
+  // One that is there is left alone.
+  EXPECT_THROW(static_cast<void>(MapStore::create(file_, map)), InputError);
+  EXPECT_EQ(read_map_store(file_).map.landmarks(), 1);
+  EXPECT_FALSE(fs::exists(file_.string() + "-wal"));  // whole without one
+}
+
 /// A write that fails when much has been written already, as on a disk that is full.
 TEST(SlowMapStore, AFullDiskIsSurvived) {
   const testing::ScratchFolder scratch;

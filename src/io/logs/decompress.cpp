@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/decompress.hpp"
 
+#include "files/present.hpp"
 #include "files/temporary.hpp"
 #include "io/logs/byte_reader.hpp"
 #include "io/logs/message_log.hpp"
@@ -142,7 +143,7 @@ namespace {
 /// Writes what `file` decompresses to; whether it is whole.
 bool decompress_to(const fs::path& file, int descriptor) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string(), 0, "cannot be opened, expected a readable file");
+  if (!in) throw unreadable(file.string());
   const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),
                                                                         &ZSTD_freeDCtx);
   if (context == nullptr) throw std::bad_alloc();

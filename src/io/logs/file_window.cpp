@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/file_window.hpp"
 
+#include "files/present.hpp"
+#include "io/read_limits.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>
-#include <system_error>
 
 namespace trussmap {
 namespace {
@@ -16,13 +17,14 @@ constexpr std::size_t kBlock = std::size_t{1} << 16U;
 }  // namespace
 
 FileWindow::FileWindow(const std::filesystem::path& file) : name_(file.string()) {
-  std::error_code ignored;
-  if (file.extension() == ".xz" || std::filesystem::is_directory(file, ignored)) {
-    buffer_ = read_file(file);  // which refuses a folder
+  require_file(file);
+  if (file.extension() == ".xz") {
+    buffer_ = read_file(file);
     return;
   }
   stream_.open(file, std::ios::binary);
-  if (!stream_) throw InputError(name_, 0, "cannot be opened, expected a readable file");
+  if (!stream_) throw unreadable(name_);
+  most_ = most_read(file);
 }
 
 /// One more block into the buffer; false at the file's end.
@@ -37,6 +39,7 @@ bool FileWindow::fill() {
   stream_.read(buffer_.data() + before, static_cast<std::streamsize>(block));
   if (stream_.bad()) throw InputError(name_, 0, "cannot be read to its end");
   buffer_.resize(before + static_cast<std::size_t>(stream_.gcount()));
+  if (offset_ + buffer_.size() > most_) throw too_long(name_, most_);
   return buffer_.size() > before;
 }
 

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -41,6 +42,7 @@ class FileWindow {
   std::string buffer_;
   std::size_t at_ = 0;  // in the buffer
   std::uint64_t offset_ = 0;
+  std::uint64_t most_ = std::numeric_limits<std::uint64_t>::max();  // bytes that are read
 };
 
 }  // namespace trussmap

@@ -7,6 +7,7 @@
 #include "io/logs/toml_fields.hpp"
 #include "io/model_tables.hpp"
 #include "io/recording_streams.hpp"
+#include "io/toml_values.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
 
@@ -266,8 +267,7 @@ LogMap parse_log_map(const std::string& text, const fs::path& file) {
     map.to_state = lines_to_state(text);
     return map;
   } catch (const toml::parse_error& error) {
-    throw InputError(file.string(), error.source().begin.line,
-                     "no TOML: " + std::string(error.description()));
+    throw InputError(file.string(), error.source().begin.line, toml_fault(error));
   } catch (const TomlAssertion&) {
     throw InputError(file.string(), 0, "no TOML: keys or values are malformed");
   }

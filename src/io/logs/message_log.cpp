@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/message_log.hpp"
 
+#include "files/present.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
@@ -32,8 +33,7 @@ bool is_message_log(const fs::path& path) {
 }
 
 LogEnd read_message_log(const fs::path& path, const LogVisit& visit) {
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) {
+  if (!is_present(path)) {
     throw InputError(path.string(), 0, "does not exist, expected a log");
   }
   for (const Format& one : kFormats) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/sequential_file.hpp"
 
+#include "files/present.hpp"
+#include "io/read_limits.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
@@ -27,7 +29,8 @@ SequentialFile::SequentialFile(const fs::path& file, std::string shown)
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) throw InputError(name_, 0, "is a folder, expected a file");
   stream_.open(file, std::ios::binary);
-  if (!stream_) throw InputError(name_, 0, "cannot be opened, expected a readable file");
+  if (!stream_) throw unreadable(name_);
+  most_ = most_read(file);
   if (fs::is_regular_file(file, ignored)) {
     const std::uintmax_t size = fs::file_size(file, ignored);
     if (!ignored) size_ = size;
@@ -52,6 +55,7 @@ std::string_view SequentialFile::read(std::uint64_t count) {
   crc_before_ = crc_;
   if (checked_) crc_ = crc32(found, crc_);
   at_ += there;
+  if (at_ > most_) throw too_long(name_, most_);
   return found;
 }
 

@@ -45,6 +45,7 @@ class SequentialFile {
   std::optional<std::uint64_t> size_;
   std::string buffer_;  // as large as it ever was
   std::uint64_t at_ = 0;
+  std::uint64_t most_ = 0;  // bytes that are read
   bool checked_ = true;
   std::uint32_t crc_ = 0;
   std::uint32_t crc_before_ = 0;

@@ -56,6 +56,10 @@ class TomlFields {
     if (has(key) && !(value > 0.0)) {
       fail(*table_->get(key), std::string(key) + " is not positive, expected more than 0");
     }
+    constexpr double kSmallest = 1e-12;  // in any unit: what is divided by less has no bounds
+    if (has(key) && value < kSmallest) {
+      fail(*table_->get(key), std::string(key) + " is below 1e-12, expected more");
+    }
     return value;
   }
   /// s that are added to times.
