@@ -104,6 +104,14 @@ Run adjust_graph(const AdjustOptions& options, const PoseGraph& graph) {
   return run;
 }
 
+/// Checking takes as long as adjusting: of larger graphs only where something is wrong with them.
+constexpr std::size_t kQuicklyChecked = 10000;  // edges
+
+bool misfits(const PoseGraphAdjustment& result) {
+  constexpr double kTooMuch = 2.0;  // chi^2 per degree of freedom
+  return result.dof > 0 && result.chi2 > kTooMuch * result.dof;
+}
+
 void run_adjust(const AdjustOptions& options) {
   if (options.solver != "frontal") {
     run_distributed_adjust(
@@ -114,9 +122,11 @@ void run_adjust(const AdjustOptions& options) {
   progress.next();
   PoseGraph graph = read_g2o(options.graph, edge2_named(options.edge2));
   progress.next();
-  warn_of_graph_mistakes(graph, options.graph);
+  const bool small = graph.edges() <= kQuicklyChecked;
+  if (small) warn_of_graph_mistakes(graph, options.graph);
   progress.next();
   const Run run = adjust_graph(options, graph);
+  if (!small && misfits(run.result)) warn_of_graph_mistakes(graph, options.graph);
   Files files;
   if (!options.out.empty()) {
     for (std::size_t v = 0; v < graph.vertices.size(); ++v) {

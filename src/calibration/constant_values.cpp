@@ -30,6 +30,7 @@ std::vector<OwnGain> own_gains(const Robot& robot, const ChannelGains& gains) {
   if (robot.drive == DriveKind::tricycle || robot.drive == DriveKind::ackermann) {
     return {{"wheel", {}, 0.0}};
   }
+  if (robot.drive == DriveKind::unicycle) return {{"travel", {}, 0.0}};
   std::vector<OwnGain> result;
   for (std::size_t k = 0; k < robot.columns.size(); ++k) {
     const Channel channel = nth_wheel(k);
@@ -66,6 +67,14 @@ void add_lengths(const Robot& robot, const DriveScales& scales,
   switch (robot.drive) {
     case DriveKind::differential:
       return add("wheelbase", robot.wheelbase, "");
+    case DriveKind::unicycle:
+      result.push_back({"turn",
+                        "times",
+                        scales.wheels / scales.length,
+                        ConstantKind::length,
+                        {Channel::turn, Channel::wheels},
+                        "what it says of its turns"});
+      return;
     case DriveKind::skid_steer:
       return add("wheelbase", robot.wheelbase, "the effective one");
     case DriveKind::tricycle:

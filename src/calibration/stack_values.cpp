@@ -145,6 +145,7 @@ void add_ros(const Told& told, const Robot& robot, std::vector<StackValue>& out)
     case DriveKind::tricycle:
       return add("ros2_controllers, tricycle_steering_controller", "wheelbase",
                  scaled(robot.length), "traction_wheels_radius", wheels);
+    case DriveKind::unicycle:
     case DriveKind::wheels:
       return;
   }

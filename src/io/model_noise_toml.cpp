@@ -162,8 +162,8 @@ Noise read_noise(const toml::table& noise) {
 std::string noise_text(const Model& model) {
   std::string text = "[noise]\n";
   const Noise defaults;
-  const bool two = model.robot.drive == DriveKind::differential ||
-                   model.robot.drive == DriveKind::unicycle;
+  const bool two =
+      model.robot.drive == DriveKind::differential || model.robot.drive == DriveKind::unicycle;
   const bool steers = is_of_drive(Channel::steer, model.robot);
   if (!two) {
     text += "wheel = " + toml_number(mean_wheel_noise(model.noise)) +
