@@ -179,7 +179,7 @@ inline Wheels with_effect(const OtherDrive& drive, Channel channel, double g) {
 
 /// With the noise that the model states: of each wheel, and of the steering.
 inline Wheels noisy(const OtherDrive& drive, const Wheels& wheels, std::mt19937_64& random) {
-  const Noise& noise = drive.model.noise;
+  const trussmap::Noise& noise = drive.model.noise;
   const double k = std::sqrt(0.5 * (noise.left * noise.left + noise.right * noise.right));
   if (drive.model.robot.drive == DriveKind::unicycle) {  // two wheels err, and show it together
     return [wheels, k, b = drive.model.robot.wheelbase, &random](const Twist& row) {
