@@ -77,7 +77,8 @@ std::vector<CheckFinding> findings_of_graphs(const CheckCommand& options) {
   }
   std::vector<CheckFinding> all;
   for (const std::string& file : options.inputs) {
-    const std::vector<CheckFinding> found = check_graph_file(file, edge2_named(options.edge2));
+    const PoseGraph graph = read_g2o(file, edge2_named(options.edge2), InformationOrder::either);
+    const std::vector<CheckFinding> found = check_graph(graph, file);
     all.insert(all.end(), found.begin(), found.end());
   }
   return all;

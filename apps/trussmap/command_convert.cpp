@@ -7,6 +7,7 @@
 #include "convert_odometer.hpp"
 #include "convert_recording.hpp"
 #include "map_yaml_output.hpp"
+#include "path_checks.hpp"
 #include "private_folder.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/log_files.hpp"
@@ -261,6 +262,7 @@ void run_convert(ConvertOptions options) {
     return;
   }
   if (options.out.empty()) throw UsageError("convert has nowhere to write to, expected OUT");
+  check_output(out, "IN", logs);
   if (logs.size() > 1 && options.map.empty()) {
     throw UsageError(
         "several files become one recording by a map, expected --map map.toml (a first one: "

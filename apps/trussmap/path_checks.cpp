@@ -97,4 +97,9 @@ void check_paths(const CLI::App& command) {
   }
 }
 
+void check_output(const fs::path& out, const std::string& option,
+                  const std::vector<fs::path>& read) {
+  for (const fs::path& one : read) check_against({"OUT", out}, {option, one});
+}
+
 }  // namespace trussmap::app

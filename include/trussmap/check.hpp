@@ -23,7 +23,6 @@
 // say without a mistake. Near linear in edges.
 #pragma once
 
-#include "trussmap/map_files.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/pose_graph.hpp"
 #include "trussmap/recording.hpp"
@@ -70,19 +69,15 @@ struct MendedRecording {
 /// columns that are wheels; throws as with_wheels does.
 [[nodiscard]] MendedRecording mended(Recording recording, const Model* model = nullptr);
 
-/// What check_graph and check_graph_file can find.
+/// What check_graph can find.
 [[nodiscard]] const std::vector<std::string>& check_graph_kinds();
 
-/// Loops the wrong way round, covariance for information, degrees, identity information, duplicate
+/// Loops the wrong way round, information in another order than documented (where it was read by
+/// InformationOrder::either), covariance for information, degrees, identity information, duplicate
 /// edges, vertices that nothing ties or holds. `file` is named in findings. Throws
 /// std::invalid_argument on a graph without edges or with a fault (find_fault).
 [[nodiscard]] std::vector<CheckFinding> check_graph(const PoseGraph& graph,
                                                     const std::string& file);
-
-/// The same of a file, of which information in TORO's order for g2o's, or the reverse, is found,
-/// too, which read_g2o refuses. Throws InputError as that does for all else.
-[[nodiscard]] std::vector<CheckFinding> check_graph_file(const std::string& path,
-                                                         Edge2 edge2 = Edge2::by_name);
 
 /// "DIR/drive.csv, left,right: ...; remedy: ...": one line.
 [[nodiscard]] std::string in_words(const CheckFinding& finding);

@@ -129,16 +129,23 @@ struct YamlMap {
 
 /// Whose EDGE2 lines a file has.
 enum class Edge2 { by_name, toro, isam };
+/// Of the entries of a pose edge's information.
+enum class InformationOrder {
+  as_documented,  ///< an InputError where they are none as they stand
+  either          ///< g2o's for TORO's and the reverse, where they are none otherwise
+};
 
 /// Throws InputError with file and line: a tag that is not in the table, too few or too many
 /// values, a value that is no finite number, a vertex defined twice or not at all, an edge between
 /// the wrong kinds of vertices, information that is not positive semidefinite, EDGE2 lines that may
 /// be either program's.
-[[nodiscard]] PoseGraph read_g2o(const std::string& path, Edge2 edge2 = Edge2::by_name);
+[[nodiscard]] PoseGraph read_g2o(const std::string& path, Edge2 edge2 = Edge2::by_name,
+                                 InformationOrder order = InformationOrder::as_documented);
 
 /// The same from text; `name` stands for the file in messages, and says what EDGE2 is.
 [[nodiscard]] PoseGraph parse_g2o(std::string_view text, const std::string& name,
-                                  Edge2 edge2 = Edge2::by_name);
+                                  Edge2 edge2 = Edge2::by_name,
+                                  InformationOrder order = InformationOrder::as_documented);
 
 /// Vertices that have an estimate, fixed ones, and all edges; numbers read back without loss.
 [[nodiscard]] std::string format_g2o(const PoseGraph& graph);

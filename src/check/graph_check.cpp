@@ -4,10 +4,8 @@
 #include "check/graph_findings.hpp"
 #include "check/graph_loops.hpp"
 #include "geometry/index.hpp"
-#include "io/graph_file.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/check.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <stdexcept>
 #include <utility>
@@ -73,10 +71,6 @@ std::vector<CheckFinding> check_graph(const PoseGraph& graph, const std::string&
   if (!check_loops(checked)) check_small_turns(checked);
   check_loose(checked);
   return findings;
-}
-
-std::vector<CheckFinding> check_graph_file(const std::string& path, Edge2 edge2) {
-  return check_graph(parse_graph(read_file(path), path, edge2, InformationOrder::either), path);
 }
 
 const std::vector<std::string>& check_graph_kinds() {

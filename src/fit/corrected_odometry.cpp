@@ -158,9 +158,8 @@ class RowAtHand {
   }
 
   /// As shapes of the rates see it.
-  [[nodiscard]] BodyMotion body(const ReckonedRow& row, const GyroShare& gyro) const {
-    if (kinematics_) return body_motion(row.travel, robot_, row.sideways);
-    return body_motion({gyro.left, gyro.right}, robot_, gyro.sideways);
+  [[nodiscard]] BodyMotion body(const ReckonedRow& row) const {
+    return body_motion(row.travel, robot_, row.sideways);
   }
 
   /// As channels see it.
@@ -262,7 +261,7 @@ class __attribute__((visibility("hidden"))) CorrectedOdometry::State {
     const GyroShare gyro = at_hand_.take(row);
     const ReckonedRow recorded = at_hand_.recorded(row, gyro);
     const WheelWay wheels{gyro.left, gyro.right, gyro.sideways};
-    const BodyMotion both = at_hand_.body(recorded, gyro);
+    const BodyMotion both = at_hand_.body(recorded);
     const OnlineFacts facts{variables_.next(wheels, both, row.duration), covariates};
     // Shapes that speak of the pose see it first as the row says, then as corrected.
     const bool twice = effects_.see_the_pose();

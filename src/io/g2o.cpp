@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "io/graph_file.hpp"
 #include "io/graph_line.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/map_files.hpp"
@@ -349,8 +348,8 @@ class Reader {
 
 }  // namespace
 
-PoseGraph parse_graph(std::string_view text, const std::string& name, Edge2 edge2,
-                      InformationOrder order) {
+PoseGraph parse_g2o(std::string_view text, const std::string& name, Edge2 edge2,
+                    InformationOrder order) {
   const bool stated = edge2 != Edge2::by_name;
   Reader reader(name, stated ? edge2 : usual_edge2(text, name), stated, order);
   std::size_t number = 0;
@@ -365,12 +364,8 @@ PoseGraph parse_graph(std::string_view text, const std::string& name, Edge2 edge
   return graph;
 }
 
-PoseGraph parse_g2o(std::string_view text, const std::string& name, Edge2 edge2) {
-  return parse_graph(text, name, edge2, InformationOrder::as_documented);
-}
-
-PoseGraph read_g2o(const std::string& path, Edge2 edge2) {
-  return parse_g2o(read_file(path), path, edge2);
+PoseGraph read_g2o(const std::string& path, Edge2 edge2, InformationOrder order) {
+  return parse_g2o(read_file(path), path, edge2, order);
 }
 
 }  // namespace trussmap

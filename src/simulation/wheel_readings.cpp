@@ -200,7 +200,7 @@ std::vector<ShownRow> readings_under(const TrueMotion& motion, const ChannelGain
                                      const Robot& robot) {
   std::vector<ShownRow> result;
   result.reserve(motion.rows.size());
-  const bool two = robot.drive == DriveKind::differential;
+  const bool two = robot.drive == DriveKind::differential || robot.drive == DriveKind::unicycle;
   const RollingWheels rolling(two || steers(robot) ? Robot() : robot);
   const SteeredWheel steered(robot);
   double angle = 0.0;

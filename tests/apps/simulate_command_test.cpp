@@ -366,7 +366,7 @@ TEST(SimulateCommand, OptionsAndEffectsOfAnotherDriveEndWithOneLine) {
       {"--length 0.5", "--length is not of drive differential"},
       {"--drive tricycle --wheelbase 0.5", "--wheelbase is not of drive tricycle"},
       {"--drive mecanum --steer-noise 0.01", "--steer-noise is not of drive mecanum"},
-      {"--drive unicycle", "unicycle"},
+      {"--drive hovercraft", "hovercraft"},
       {"--effect 'roller slip=0.1'", "is of another drive than differential"},
       {"--drive omni3 --effect 'steering offset=0.1'", "is of another drive than omni3"},
       {"--drive ackermann --spacing 1", "at least 1.46"},

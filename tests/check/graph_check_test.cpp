@@ -7,6 +7,7 @@
 #include "pose_graph/synthetic_graph.hpp"
 #include "shared_data.hpp"
 #include "trussmap/check.hpp"
+#include "trussmap/map_files.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -238,7 +239,8 @@ TEST(GraphCheck, BenchmarksHaveNoFinding) {
                            "posegraph/input_INTEL_g2o.g2o.xz", "posegraph/MIT.g2o.xz",
                            "posegraph/FR079_P_toro.graph.xz", "posegraph/kitti_05.g2o.xz"}) {
     const std::string path = testing::shared(std::string("data/") + file).string();
-    std::set<std::string> kinds = kinds_of(check_graph_file(path));
+    std::set<std::string> kinds =
+        kinds_of(check_graph(read_g2o(path, Edge2::by_name, InformationOrder::either), path));
     EXPECT_EQ(kinds, std::set<std::string>{}) << file;
   }
 }
@@ -247,7 +249,9 @@ TEST(GraphCheck, ReportedGraphsAreNamed) {
   TRUSSMAP_NEEDS_SHARED("data/reports/graphs/none.g2o");
   const auto kinds = [](const std::string& name) {
     return kinds_of(
-        check_graph_file(testing::shared("data/reports/graphs/" + name + ".g2o").string()));
+        check_graph(read_g2o(testing::shared("data/reports/graphs/" + name + ".g2o").string(),
+                             Edge2::by_name, InformationOrder::either),
+                    name));
   };
   EXPECT_EQ(kinds("none"), std::set<std::string>{});
   EXPECT_EQ(kinds("one"), std::set<std::string>{"loops reversed"});

@@ -214,7 +214,9 @@ TEST(CorrectedOdometryOfDrives, RobotsWithoutTheirColumnsOrLengthsAreRefused) {
     model = other_drive(kind).model;
     model.robot.wheelbase = 0.0;
     EXPECT_THROW(CorrectedOdometry{model}, std::invalid_argument);
-    if (kind == DriveKind::skid_steer || kind == DriveKind::wheels) continue;
+    if (kind == DriveKind::unicycle || kind == DriveKind::skid_steer || kind == DriveKind::wheels) {
+      continue;
+    }
     model = other_drive(kind).model;
     model.robot.length = 0.0;
     EXPECT_THROW(CorrectedOdometry{model}, std::invalid_argument);

@@ -62,7 +62,8 @@ const Refused kBadModels[] = {
      ":2: key \"base\" in [robot] is unknown for drive differential, expected drive, columns, "
      "wheelbase"},
     {"UnknownDrive", "[robot]\ndrive = \"hover\"\n",
-     ":2: drive \"hover\" is unknown, expected one of differential, skid-steer, tricycle, "
+     ":2: drive \"hover\" is unknown, expected one of differential, unicycle, skid-steer, "
+     "tricycle, "
      "ackermann, omni3, mecanum, wheels"},
     {"KeyOfAnotherDrive", "[robot]\ndrive = \"omni3\"\nwheelbase = 0.3\n",
      ":3: key \"wheelbase\" in [robot] is unknown for drive omni3, expected drive, columns, "

@@ -50,7 +50,7 @@ const std::vector<std::string>& rooms() {
 const std::map<std::string, std::set<std::string>> kOnly = {
     {"simulation", {"geometry", "text", "statistics", "recording", "effects", "simulation"}},
     {"truss", {"geometry", "text", "linalg", "truss"}},
-    {"store", {"geometry", "text", "linalg", "truss", "map", "store"}},
+    {"store", {"geometry", "text", "files", "linalg", "truss", "map", "store"}},
     {"linalg", {"parallel", "geometry", "linalg"}},
 };
 
