@@ -101,7 +101,7 @@ TEST_P(SimulatedDrives, EffectsWithTheirCoefficientsLeaveNothing) {
     EXPECT_GT(without, 5.0) << one.name;
     ++tried;
   }
-  EXPECT_GE(tried, 19);
+  EXPECT_GE(tried, GetParam() == DriveKind::unicycle ? 17 : 19);  // it has no wheels of its own
 }
 
 /// The inner wheels of a turn go backwards, so that each wheel's own share matters, and six of them
