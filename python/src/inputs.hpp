@@ -37,7 +37,7 @@ struct Given {
 
 /// Read.
 struct Read {
-  std::vector<DrivenRecording> recordings;  ///< as they are in their files
+  std::vector<Recording> recordings;  ///< as they are in their files
   Model model;
   std::string model_name;  ///< for messages
 };
