@@ -371,16 +371,6 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
   return run;
 }
 
-/// Whether an effect that was fitted is larger than is known of its channel.
-bool is_implausible(const ModelFit& given, const Finding& found) {
-  if (found.effect.is_constant()) return false;
-  Tested fitted;
-  fitted.candidate.effect = found.effect;
-  fitted.score = ScoreTest(*given.state).test({found.effect}).front();
-  fitted.score.coefficients = found.effect.coefficients;
-  return fitted.score.largest.size() == found.effect.coefficients.size() && is_implausible(fitted);
-}
-
 /// The constants come first; what else is missing, and the noise, are judged beside them.
 DiagnosisRun diagnosis_beside(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                               GrossConstants constants, const Noise& stated,
@@ -399,7 +389,6 @@ DiagnosisRun diagnosis_beside(const std::vector<DrivenRecording>& recordings, co
   }
   result.held_out = predict_held_out(recordings, given, options.legs);
   std::vector<Finding> first = findings_of(recordings, given, constants, options.legs);
-  for (Finding& one : first) one.implausible = is_implausible(given, one);
   result.verdict = Diagnosis::Verdict::missing;
   result.objection = Objection::none;
   result.missing = first.front().effect.name;

@@ -6,7 +6,6 @@
 #include "calibration/wheel_calibration.hpp"
 #include "criticism/candidates.hpp"
 #include "criticism/effect_strength.hpp"
-#include "criticism/gross_cause.hpp"
 #include "criticism/look_alikes.hpp"
 #include "criticism/refits.hpp"
 #include "effects/channel_physics.hpp"
@@ -302,27 +301,11 @@ std::vector<LookAlike> look_alikes_at(const std::vector<DrivenRecording>& record
   return alike;
 }
 
-/// One that a look-alike fits clearly better than is that.
-GrossConstants with_better_fits(const std::vector<DrivenRecording>& recordings,
-                                GrossConstants constants) {
-  for (std::size_t k = constants.first; k < constants.fit.model.effects.size(); ++k) {
-    const Effect effect = constants.fit.model.effects[k];
-    const ScoreTest at_fit(*constants.fit.state);
-    const std::vector<LookAlike> alike = look_alikes_at(recordings, constants.fit, at_fit, k);
-    const LookAlike* better = better_fitting(alike, effect);
-    if (better == nullptr) continue;
-    std::vector<Effect> effects = constants.fit.model.effects;
-    effects[k] = better->effect;
-    effects[k].coefficients = at_fit.lacking(k, effect).test({better->effect}).front().coefficients;
-    std::optional<ModelFit> fit = with_others(recordings, constants.fit, std::move(effects));
-    if (fit && chi2_of_all(*fit) < chi2_of_all(constants.fit)) constants.fit = *std::move(fit);
-  }
-  return constants;
-}
+}  // namespace
 
-/// Nothing where there are none.
-std::optional<GrossConstants> sure_constants(const std::vector<DrivenRecording>& recordings,
-                                             const ModelFit& given) {
+std::optional<GrossConstants> gross_constants(const std::vector<DrivenRecording>& recordings,
+                                              const ModelFit& given) {
+  if (given.p_value > kMisfit) return std::nullopt;
   const std::vector<Effect> constants = constants_for(recordings, given);
   if (constants.empty()) return std::nullopt;
   const std::size_t first = given.model.effects.size();
@@ -332,25 +315,8 @@ std::optional<GrossConstants> sure_constants(const std::vector<DrivenRecording>&
   if (!strong) return std::nullopt;
   const ModelFit sure = sure_ones(recordings, *strong, first);
   if (!matters(sure, first) || per_dof(sure) > kMostLeft * per_dof(given)) return std::nullopt;
-  return with_better_fits(
-      recordings,
-      {surest_first(recordings, with_wheel_scale(recordings, sure, first), first), first});
-}
-
-}  // namespace
-
-std::optional<GrossConstants> gross_constants(const std::vector<DrivenRecording>& recordings,
-                                              const ModelFit& given) {
-  constexpr double kExplained = 1e-3;  // p
-  if (given.p_value > kMisfit) return std::nullopt;
-  std::optional<GrossConstants> constants = sure_constants(recordings, given);
-  if (constants && constants->fit.p_value > kExplained) return constants;
-  // What constants leave, or cannot be told by, may be one error of another kind.
-  if (std::optional<ModelFit> cause =
-          gross_cause(recordings, given, measures_scale(recordings, given))) {
-    return GrossConstants{*std::move(cause), given.model.effects.size()};
-  }
-  return constants;
+  return GrossConstants{surest_first(recordings, with_wheel_scale(recordings, sure, first), first),
+                        first};
 }
 
 namespace {

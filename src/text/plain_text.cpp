@@ -5,9 +5,9 @@
 #include "trussmap/table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
-
-#include <fmt/format.h>
+#include <cstdio>
 
 namespace trussmap {
 namespace {
@@ -35,6 +35,12 @@ CodePoint first_of(std::string_view text) {
   const bool surrogate = value >= 0xD800U && value <= 0xDFFFU;
   if (longer_than_needed || surrogate || value > 0x10FFFFU) return {};
   return {value, bytes};
+}
+
+std::string hexadecimal(std::uint32_t value, int digits) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "%0*lX", digits, static_cast<unsigned long>(value));
+  return text.data();
 }
 
 bool is_command(std::uint32_t c) {
@@ -116,16 +122,16 @@ std::string escaped_controls(std::string_view text, bool lines) {
   while (!text.empty()) {
     const CodePoint c = first_of(text);
     if (c.bytes == 0) {
-      result += fmt::format("\\x{:02X}", static_cast<unsigned char>(text.front()));
+      result += "\\x" + hexadecimal(static_cast<unsigned char>(text.front()), 2);
       text.remove_prefix(1);
       continue;
     }
     if (!is_command(c.value) || (lines && c.value == '\n')) {
       result += text.substr(0, c.bytes);
     } else if (c.value < 0x100U) {
-      result += fmt::format("\\x{:02X}", c.value);
+      result += "\\x" + hexadecimal(c.value, 2);
     } else {
-      result += fmt::format("\\u{{{:04X}}}", c.value);
+      result += "\\u{" + hexadecimal(c.value, 4) + "}";
     }
     text.remove_prefix(c.bytes);
   }

@@ -148,7 +148,7 @@ TEST(SlowReports, AreToldTheConstantThatIsWrong) {
     const Model model = read_model(folder / "model.toml");
     const FitOptions fit = gated_fit();
     const PreparedRecordings ready =
-        prepare_recordings({testing::driven(read_recording(folder))}, model, fit);
+        prepare_recordings({with_wheels(read_recording(folder), model.robot)}, model, fit);
     DiagnoseOptions options;
     options.fit = fit;
     const Diagnosis result = diagnose(ready.recordings, model, options);
