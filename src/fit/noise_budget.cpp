@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -127,23 +128,27 @@ struct Stretch {
 /// unit, those that hold the end of a row.
 std::vector<Stretch> stretches(const MotionRows& drive, double horizon) {
   constexpr double kPerRow = 4.0;
+  static constexpr double kMost = 9e15;  // whole numbers that a double tells apart
   std::vector<Stretch> result;
   const double apart = 0.5 * horizon;
-  const double count = std::floor(2.0 * ((drive.t.back() - drive.start()) / horizon - 1.0) + 1.0);
-  const auto add = [&](double k) {
-    const double from = drive.start() + apart * k;
+  const auto whole = [](double number) {
+    return static_cast<std::int64_t>(std::floor(std::min(number, kMost)));
+  };
+  const std::int64_t count = whole(2.0 * ((drive.t.back() - drive.start()) / horizon - 1.0) + 1.0);
+  const auto add = [&](std::int64_t k) {
+    const double from = drive.start() + apart * static_cast<double>(k);
     result.push_back({from, from + horizon});
   };
-  if (count <= kPerRow * static_cast<double>(drive.rows())) {
-    for (double k = 0.0; k < count; k += 1.0) add(k);
+  if (static_cast<double>(count) <= kPerRow * static_cast<double>(drive.rows())) {
+    for (std::int64_t k = 0; k < count; ++k) add(k);
     return result;
   }
-  double next = 0.0;
+  std::int64_t next = 0;
   for (const double t : drive.t) {
-    const double last = std::floor((t - drive.start()) / apart);
-    for (double k = std::max(next, last - 1.0); k <= std::min(last, count - 1.0); k += 1.0) {
+    const std::int64_t last = whole((t - drive.start()) / apart);
+    for (std::int64_t k = std::max(next, last - 1); k <= std::min(last, count - 1); ++k) {
       add(k);
-      next = k + 1.0;
+      next = k + 1;
     }
   }
   return result;
