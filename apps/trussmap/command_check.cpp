@@ -47,31 +47,34 @@ std::string json_text(const std::vector<CheckFinding>& findings) {
   return ordered_json{{"findings", list}}.dump(2) + "\n";
 }
 
-std::optional<Model> model_of(const CheckCommand& options,
-                              const std::vector<Recording>& recordings) {
-  if (options.model.empty()) return std::nullopt;
-  return read_model(options.model, recordings);
+void report(const CheckCommand& options, const std::vector<CheckFinding>& findings) {
+  if (!options.json.empty()) write_files({{options.json, json_text(findings)}});
+  fmt::print("{}", check_text(findings, style_of(stdout)));
 }
 
 /// The recording as it should be, in a folder of its own.
-void write_mended(const CheckCommand& options) {
-  const std::vector<Recording> recordings = read_recordings(options.inputs);
-  const std::optional<Model> model = model_of(options, recordings);
-  const MendedRecording whole = mended(recordings.front(), model ? &*model : nullptr);
+void write_mended(const MendedRecording& whole, const std::string& folder) {
   std::string comment = "mended by trussmap check";
   for (const std::string& one : whole.notes) comment += "\n" + one;
-  write_recording(options.mend, whole.recording, comment);
+  write_recording(folder, whole.recording, comment);
   for (const std::string& one : whole.notes) fmt::print("mended: {}\n", one);
-  fmt::print("{}written: {}\n", whole.notes.empty() ? "nothing to mend; " : "", options.mend);
+  fmt::print("{}written: {}\n", whole.notes.empty() ? "nothing to mend; " : "", folder);
 }
 
-std::vector<CheckFinding> findings_of_recordings(const CheckCommand& options) {
+/// Whether nothing is found.
+bool recordings_pass(const CheckCommand& options) {
   const std::vector<Recording> recordings = read_recordings(options.inputs);
-  const std::optional<Model> model = model_of(options, recordings);
-  return check_read_recordings(recordings, model ? &*model : nullptr, options.model);
+  std::optional<Model> model;
+  if (!options.model.empty()) model = read_model(options.model, recordings);
+  const Model* const given = model ? &*model : nullptr;
+  const std::vector<CheckFinding> findings =
+      check_read_recordings(recordings, given, options.model);
+  report(options, findings);
+  if (!options.mend.empty()) write_mended(mended(recordings.front(), given), options.mend);
+  return findings.empty();
 }
 
-std::vector<CheckFinding> findings_of_graphs(const CheckCommand& options) {
+bool graphs_pass(const CheckCommand& options) {
   if (!options.model.empty()) {
     throw UsageError("--model is given with pose graphs, expected with recordings: folders");
   }
@@ -81,7 +84,8 @@ std::vector<CheckFinding> findings_of_graphs(const CheckCommand& options) {
     const std::vector<CheckFinding> found = check_graph(graph, file);
     all.insert(all.end(), found.begin(), found.end());
   }
-  return all;
+  report(options, all);
+  return all.empty();
 }
 
 /// Whether the inputs are files, pose graphs therefore; recordings are folders.
@@ -103,12 +107,7 @@ void run_check(const CheckCommand& options, bool edge2_given) {
   if (!options.mend.empty() && (graphs || options.inputs.size() != 1)) {
     throw UsageError("--mend is given, expected with one recording: a folder");
   }
-  const std::vector<CheckFinding> findings =
-      graphs ? findings_of_graphs(options) : findings_of_recordings(options);
-  if (!options.json.empty()) write_files({{options.json, json_text(findings)}});
-  fmt::print("{}", check_text(findings, style_of(stdout)));
-  if (!options.mend.empty()) write_mended(options);
-  if (!findings.empty()) throw AnswerIsNo();
+  if (!(graphs ? graphs_pass(options) : recordings_pass(options))) throw AnswerIsNo();
 }
 
 }  // namespace

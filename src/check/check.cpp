@@ -382,12 +382,10 @@ std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordi
   CheckFindings findings;
   if (recordings.empty()) return findings;
   const bool by_columns = model != nullptr && !model->robot.columns.empty();
+  const Robot robot = by_columns ? model->robot : Robot();
   std::vector<DrivenRecording> all;
   all.reserve(recordings.size());
-  const auto taken = [&](const Recording& one) {
-    return by_columns ? by_its_columns(one, model->robot) : with_wheels(one, Robot());
-  };
-  for (const Recording& one : recordings) all.push_back(taken(one));
+  for (const Recording& one : recordings) all.push_back(by_its_columns(one, robot));
   for (const DrivenRecording& one : all) require_well_formed(one);
   if (model != nullptr && !model->robot.wheelbase_stated) {
     findings.push_back(
@@ -401,7 +399,8 @@ std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordi
     if (!glitches.empty()) {  // the rest is checked without
       Checked with_glitches{all[k], findings};
       check_glitches(with_glitches, glitches);
-      all[k] = taken(without_glitches(recordings[k], glitches, names_of_wheels(all[k].drive)));
+      all[k] = by_its_columns(
+          without_glitches(recordings[k], glitches, names_of_wheels(all[k].drive)), robot);
     }
     Checked checked{all[k], findings};
     checked.wheelbase_known = model != nullptr && model->robot.wheelbase_stated;

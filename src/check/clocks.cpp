@@ -9,11 +9,11 @@
 //   other  a file's rows lie outside of the drive, or all in a small part of it, and in another
 //          unit, or counted from another start, they would fill it
 #include "check/findings.hpp"
+#include "recording/time_units.hpp"
 #include "statistics/median.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -31,13 +31,6 @@ constexpr double kLongestRow = 30.0;    // s
 constexpr double kLongestTravel = 2.0;  // m in a row
 constexpr double kDay = 86400.0;        // s
 constexpr double kSince1970 = 5e8;      // s: no clock that began with the drive shows so much
-
-struct TimeUnit {
-  const char* name;
-  double per_second;
-};
-constexpr std::array<TimeUnit, 3> kTimeUnits{
-    {{"milliseconds", 1e3}, {"microseconds", 1e6}, {"nanoseconds", 1e9}}};
 
 /// The unit in which a row that long, at that speed, is a robot's.
 const TimeUnit* unit_of_rows(double duration, double speed) {

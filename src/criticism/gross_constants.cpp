@@ -45,15 +45,12 @@ bool is_scale(Channel channel) {
   return channel == Channel::travel || channel == Channel::sideways;
 }
 
-bool measures_scale(const std::vector<DrivenRecording>& recordings, const ModelFit& given) {
-  return measures_distance(recordings, fitter_options(given.options).problem, given.model.noise);
-}
-
 /// Those that the recordings can have, and the model lacks; without coefficients.
 std::vector<Effect> constants_for(const std::vector<DrivenRecording>& recordings,
                                   const ModelFit& given) {
   const FitState& fit = *given.state;
-  const bool scale = measures_scale(recordings, given);
+  const bool scale =
+      measures_distance(recordings, fitter_options(given.options).problem, given.model.noise);
   const bool gyro = has_gyro(fit.recordings);
   std::vector<Effect> result;
   const ShapeContext context(fit.recordings, fit.model.robot, fit.paths);

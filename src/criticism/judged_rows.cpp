@@ -37,10 +37,6 @@ Model model_with_missing(const Diagnosis& diagnosis, const ModelFit& fit) {
   return model;
 }
 
-}  // namespace
-
-namespace {
-
 JudgedRun run_by(PreparedRecordings rows, ModelFit fit, const Noise& stated,
                  const DiagnoseOptions& options) {
   JudgedRun judged{std::move(rows), std::move(fit), {}};

@@ -4,6 +4,8 @@
 
 #include "trussmap/survey_comparison.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -94,7 +96,20 @@ PreparedRecordings prepared_again(const PreparedRecordings& prepared, const Mode
 }
 
 bool use_the_same(const PreparedRecordings& one, const PreparedRecordings& other) {
-  return one.notes == other.notes;
+  constexpr double kSame = 1e-6;  // of the time between frames
+  const UsedSightings& a = one.sightings;
+  const UsedSightings& b = other.sightings;
+  if (a.used != b.used || a.all != b.all || std::abs(a.every - b.every) > kSame * a.every) {
+    return false;
+  }
+  const auto same_point = [](const SurveyPoint& p, const SurveyPoint& q) {
+    return p.landmark == q.landmark;
+  };
+  return std::equal(one.recordings.begin(), one.recordings.end(), other.recordings.begin(),
+                    other.recordings.end(), [&](const auto& p, const auto& q) {
+                      return std::equal(p.survey.begin(), p.survey.end(), q.survey.begin(),
+                                        q.survey.end(), same_point);
+                    });
 }
 
 }  // namespace trussmap

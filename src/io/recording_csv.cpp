@@ -6,6 +6,7 @@
 #include "io/csv.hpp"
 #include "io/recording_limits.hpp"
 #include "io/recording_streams.hpp"
+#include "recording/time_units.hpp"
 #include "recording/variable_names.hpp"
 #include "text/plain_text.hpp"
 #include "trussmap/error.hpp"
@@ -38,14 +39,6 @@ bool is_reserved(std::string_view name) {
   return std::find(variables.begin(), variables.end(), name) != variables.end() ||
          std::find(std::begin(kTaken), std::end(kTaken), name) != std::end(kTaken);
 }
-
-/// "milliseconds", ..., with how many make a second.
-struct TimeUnit {
-  const char* name;
-  double per_second;
-};
-constexpr TimeUnit kTimeUnits[] = {
-    {"milliseconds", 1e3}, {"microseconds", 1e6}, {"nanoseconds", 1e9}};
 
 /// A time [s]. What is beyond all clocks looks like the time since 1970 in another unit.
 double time_in(const CsvReader& csv, int column) {

@@ -27,8 +27,12 @@ constexpr Noise kNoise{0.02, 0.01};
 constexpr std::uint64_t kSeeds = 6;
 
 std::set<std::string> kinds_of(const std::vector<CheckFinding>& findings) {
+  const std::vector<std::string>& listed = check_graph_kinds();
   std::set<std::string> kinds;
-  for (const CheckFinding& one : findings) kinds.insert(one.kind);
+  for (const CheckFinding& one : findings) {
+    EXPECT_NE(std::find(listed.begin(), listed.end(), one.kind), listed.end()) << one.kind;
+    kinds.insert(one.kind);
+  }
   return kinds;
 }
 
