@@ -25,6 +25,8 @@ namespace trussmap {
 /// One model on the way.
 struct DiscoveryStep {
   std::optional<Effect> added;  ///< none: the model given
+  /// Added together with it: the model cannot be fitted with them alone.
+  std::vector<Effect> together = {};
   std::vector<std::string> dropped;
   double chi2 = 0.0;
   int dof = 0;

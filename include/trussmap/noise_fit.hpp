@@ -41,6 +41,7 @@ struct NoiseSource {
   double sd_error = 0.0;
   double length_error = 0.0;
   bool at_limit = false;  ///< size or length went as far as is sought: it may lie beyond
+  bool no_noise = false;  ///< the size did, upwards: what is so large is an error, and not noise
   double gain = 0.0;      ///< fall of -2 log R by it; of a white source by its new size
   double p_value = 1.0;   ///< of a process: chance of as much, times the processes tried
 };

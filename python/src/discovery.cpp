@@ -126,6 +126,7 @@ DiagnosisResult diagnosis_of(const DiscoveryResult& self, const Diagnosis& diagn
 void add_rows(py::module_& module) {
   RowClass<DiscoveryStep>(module, "DiscoveryStep", "DiscoveryStep")
       .field("added", &DiscoveryStep::added)
+      .field("together", &DiscoveryStep::together)
       .field("dropped", &DiscoveryStep::dropped)
       .field("chi2", &DiscoveryStep::chi2)
       .field("dof", &DiscoveryStep::dof)

@@ -171,14 +171,26 @@ Model with_constants(const Model& model, const std::vector<double>& g) {
   return result;
 }
 
-std::vector<double> refined(std::vector<double> g, const Wanted& wanted, const Robot& robot,
+double share_before_turning(const std::vector<SoughtConstant>& constants,
+                            const std::vector<double>& g, std::size_t which) {
+  if (constants[which].channel != Channel::difference) return 1.0;
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (constants[k].channel == Channel::turn) return 1.0 / (1.0 + g[k]);
+  }
+  return 1.0;
+}
+
+std::vector<double> refined(const std::vector<double>& g, const Wanted& wanted, const Robot& robot,
                             const Eigen::VectorXd& found) {
   const std::vector<SoughtConstant> constants = sought_constants(robot);
+  std::vector<double> result = g;
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < constants.size(); ++k) {
-    if (wanted[k]) g[k] = constants[k].joined(g[k], found[at++]);
+    if (!wanted[k]) continue;
+    const double more = share_before_turning(constants, g, k) * found[at++];
+    result[k] = constants[k].joined(g[k], more);
   }
-  return g;
+  return result;
 }
 
 }  // namespace trussmap

@@ -58,8 +58,13 @@ using Wanted = std::vector<bool>;
 /// The model whose constants have these values; its other effects as given.
 [[nodiscard]] Model with_constants(const Model& model, const std::vector<double>& g);
 
+/// What counts of a constant that was found on rows corrected by `g`: wheels of two sizes turn the
+/// robot before its turning is scaled by the wheelbase.
+[[nodiscard]] double share_before_turning(const std::vector<SoughtConstant>& constants,
+                                          const std::vector<double>& g, std::size_t which);
+
 /// `g` and what was found, of those that are wanted, on rows that are corrected by it.
-[[nodiscard]] std::vector<double> refined(std::vector<double> g, const Wanted& wanted,
+[[nodiscard]] std::vector<double> refined(const std::vector<double>& g, const Wanted& wanted,
                                           const Robot& robot, const Eigen::VectorXd& found);
 
 }  // namespace trussmap

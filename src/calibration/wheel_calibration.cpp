@@ -140,7 +140,7 @@ void keep_covariance(WheelCalibration& result, const std::vector<double>& g, con
     if (!wanted[k]) continue;
     result.channels.push_back(constants[k].channel);
     found.push_back(g[k]);
-    slopes.push_back(constants[k].slope(g[k]));
+    slopes.push_back(share_before_turning(constants, g, k) * constants[k].slope(g[k]));
   }
   const auto size = std::ssize(found);
   const Eigen::VectorXd slope = Eigen::VectorXd::Map(slopes.data(), size);
@@ -161,7 +161,8 @@ void read_constants(WheelCalibration& result, const std::vector<double>& g, cons
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < constants.size(); ++k) {
     if (!wanted[k]) continue;
-    const double sd = std::sqrt(adjustment.coefficient_covariance(at, at));
+    const double sd = share_before_turning(constants, g, k) *
+                      std::sqrt(adjustment.coefficient_covariance(at, at));
     ++at;
     const Channel channel = constants[k].channel;
     const double ratio = constants[k].ratio(g[k]);
@@ -170,7 +171,7 @@ void read_constants(WheelCalibration& result, const std::vector<double>& g, cons
           channel == Channel::turn || channel == Channel::wheels || channel == Channel::sideways;
       result.constants.push_back({channel, {g[k], multiplies ? (1.0 + g[k]) * sd : sd}});
     } else if (channel == Channel::difference) {
-      result.diameter_ratio = Calibrated{ratio, sd / std::pow(1.0 - 0.5 * g[k], 2)};
+      result.diameter_ratio = Calibrated{ratio, ratio * sd};
     } else if (channel == Channel::turn) {
       result.wheelbase_ratio = Calibrated{ratio, ratio * sd};
     } else {

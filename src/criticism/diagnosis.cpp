@@ -319,6 +319,17 @@ void tell_of_left_out(Diagnosis& diagnosis, std::size_t still) {
   }
 }
 
+/// Noise that would have to be larger than any explains nothing away.
+void object_to_noise(const FittedNoise& noise, Diagnosis& diagnosis) {
+  if (diagnosis.verdict != Diagnosis::Verdict::nothing_missing) return;
+  if (std::none_of(noise.sources.begin(), noise.sources.end(),
+                   [](const NoiseSource& one) { return one.no_noise; })) {
+    return;
+  }
+  diagnosis.verdict = Diagnosis::Verdict::unexplained_misfit;
+  diagnosis.objection = Objection::noise;
+}
+
 /// About a fit that may be believed.
 DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                              const Noise& stated, const DiagnoseOptions& options,
@@ -367,7 +378,10 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
     std::erase_if(run.result.warnings,
                   [](const std::string& one) { return one.rfind("chi^2 = ", 0) == 0; });
   }
-  if (options.estimate_noise) run.result.under = std::move(under);
+  if (options.estimate_noise) {
+    object_to_noise(under->noise, run.result);
+    run.result.under = std::move(under);
+  }
   return run;
 }
 
@@ -421,7 +435,7 @@ DiagnosisRun diagnosis_beside(const std::vector<DrivenRecording>& recordings, co
 DiagnosisRun run_diagnosis(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                            const Noise& stated, const DiagnoseOptions& options,
                            const KnownLegs& known) {
-  if (std::optional<GrossConstants> gross = gross_constants(recordings, fit)) {
+  if (std::optional<GrossConstants> gross = gross_constants(recordings, fit, options.legs)) {
     return diagnosis_beside(recordings, fit, *std::move(gross), stated, options);
   }
   return diagnosis_about(recordings, fit, stated, options, known);

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -235,15 +236,22 @@ class Discoverer {
   /// Those that explain most, one step each; their sizes are fitted already.
   void take_constants(const GrossConstants& gross) {
     const std::vector<Effect>& all = gross.fit.model.effects;
+    std::vector<Effect> together;
     for (std::size_t count = gross.first + 1; count <= all.size(); ++count) {
       const std::size_t place = count - 1 - gross.first;
       found_.push_back(candidates_[place]);
       const double before = result_.found.chi2;
       Model model = gross.fit.model;
       model.effects.resize(count);
-      result_.found = count == all.size() ? gross.fit : refit(recordings_, model, gross.fit);
+      try {
+        result_.found = count == all.size() ? gross.fit : refit(recordings_, model, gross.fit);
+      } catch (const SolveError&) {  // lost without those that come next
+        together.push_back(all[count - 1]);
+        continue;
+      }
       DiscoveryStep& step = record();
       step.added = result_.found.model.effects.back();
+      step.together = std::exchange(together, {});
       step.predicted_decrease = before - result_.found.chi2;
       step.held_out = predict_held_out(recordings_, result_.found, options_.diagnosis.legs);
       step.predicted = metrics_of(step.held_out);

@@ -206,7 +206,12 @@ std::vector<Seen> added_by(const Discovery& discovery) {
     // A place or threshold may have been sought anew since the step: then the name has it.
     const auto start = [](const std::string& name) { return name.substr(0, name.find(" (x=")); };
     for (const DiscoveryStep& step : discovery.steps) {
-      if (!step.added || start(step.added->name) != start(one.effect.name)) continue;
+      const auto is_it = [&](const Effect& other) {
+        return start(other.name) == start(one.effect.name);
+      };
+      const bool here = (step.added && is_it(*step.added)) ||
+                        std::any_of(step.together.begin(), step.together.end(), is_it);
+      if (!here) continue;
       added.push_back({one, step.look_alikes});
       break;
     }
@@ -223,6 +228,7 @@ std::vector<ModelEvidence> models_between(const std::vector<DrivenRecording>& re
   Model model = discovery.given.model;
   for (std::size_t k = 1; k + 1 < discovery.steps.size(); ++k) {
     const DiscoveryStep& step = discovery.steps[k];
+    model.effects.insert(model.effects.end(), step.together.begin(), step.together.end());
     model.effects.push_back(*step.added);
     std::erase_if(model.effects, [&step](const Effect& one) {
       return std::find(step.dropped.begin(), step.dropped.end(), one.name) != step.dropped.end();

@@ -37,7 +37,8 @@ bool is_motion(Channel channel) {
 
 /// Whether its g is a factor less 1.
 bool is_factor(Channel channel) {
-  return is_motion(channel) || channel == Channel::difference || channel == Channel::wheels;
+  return is_motion(channel) || channel == Channel::difference || channel == Channel::wheels ||
+         channel == Channel::left || channel == Channel::right;
 }
 
 /// Without a measured distance a smaller map has smaller errors.
@@ -101,7 +102,8 @@ std::optional<ModelFit> fitted_afresh(const std::vector<DrivenRecording>& record
   return if_possible<ModelFit>([&] { return fit_model(recordings, model, given.options); });
 }
 
-/// g of travel, of turning and of the wheels' difference, as a calibration's effects have them.
+/// g of travel, of turning and of the wheels' difference, as effects that add to each other have
+/// them; a calibration's act one after the other.
 struct DriveFactors {
   double travel = 0.0, turn = 0.0, difference = 0.0;
 };
@@ -121,7 +123,9 @@ DriveFactors factors_of(const Model& calibrated) {
     }
   }
   if (wheels > 0) result.travel += radii / wheels;
-  result.turn += result.travel;
+  const double turn = (1.0 + result.turn) * (1.0 + result.travel);
+  result.turn = turn - 1.0;
+  result.difference *= turn;
   return result;
 }
 
@@ -246,6 +250,44 @@ ModelFit with_wheel_scale(const std::vector<DrivenRecording>& recordings, const 
   return *one;
 }
 
+/// One wheel of another size is a ratio, a scale and a turning at once: one constant instead of
+/// them, where a fit with it does as well.
+std::optional<ModelFit> with_one_wheel(const std::vector<DrivenRecording>& recordings,
+                                       const ModelFit& fit, std::size_t first) {
+  std::vector<Effect> effects(fit.model.effects.begin(),
+                              fit.model.effects.begin() + static_cast<std::ptrdiff_t>(first));
+  double ratio = 0.0;
+  double motion = 0.0;
+  for (std::size_t k = first; k < fit.model.effects.size(); ++k) {
+    const Effect& one = fit.model.effects[k];
+    if (one.channel == Channel::difference) {
+      ratio = one.coefficients.front();
+    } else if (is_motion(one.channel)) {
+      motion += one.coefficients.front();
+    } else {
+      effects.push_back(one);
+    }
+  }
+  if (ratio == 0.0 || fit.model.effects.size() - effects.size() < 2) return std::nullopt;
+  const bool right = ratio * motion > 0.0;
+  effects.push_back({right ? "right wheel" : "left wheel",
+                     right ? Channel::right : Channel::left,
+                     {"1"},
+                     {right ? ratio : -ratio}});
+  std::optional<ModelFit> one = with_others(recordings, fit, std::move(effects));
+  if (!one || chi2_of_all(*one) - chi2_of_all(fit) > kWorthKeeping * noise_of(fit)) {
+    return std::nullopt;
+  }
+  return one;
+}
+
+/// With as few constants as do.
+ModelFit with_fewest(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
+                     std::size_t first) {
+  if (std::optional<ModelFit> one = with_one_wheel(recordings, fit, first)) return *std::move(one);
+  return with_wheel_scale(recordings, fit, first);
+}
+
 ModelFit surest_first(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                       std::size_t first) {
   std::vector<std::pair<double, Effect>> rated;
@@ -272,6 +314,45 @@ bool matters(const ModelFit& fit, std::size_t first) {
 
 double per_dof(const ModelFit& fit) {
   return chi2_of_all(fit) / std::max(1, fit.dof);
+}
+
+/// Those that the recordings surely show, where they matter.
+std::optional<ModelFit> those_that_matter(const std::vector<DrivenRecording>& recordings,
+                                          const ModelFit& given,
+                                          const std::vector<Effect>& constants) {
+  const std::size_t first = given.model.effects.size();
+  const std::optional<ModelFit> all = with_all(recordings, given, constants);
+  if (!all || !matters(*all, first)) return std::nullopt;
+  const std::optional<ModelFit> strong = strong_ones(recordings, *all, first);
+  if (!strong) return std::nullopt;
+  ModelFit sure = sure_ones(recordings, *strong, first);
+  if (!matters(sure, first)) return std::nullopt;
+  return sure;
+}
+
+/// Far from the right constants the gate takes right measurements for wrong ones: here it only
+/// looks at what comes of them all.
+std::optional<ModelFit> those_without_gate(const std::vector<DrivenRecording>& recordings,
+                                           const ModelFit& given,
+                                           const std::vector<Effect>& constants) {
+  ModelFit open = given;
+  open.options.gate.reset();
+  std::optional<ModelFit> found = those_that_matter(recordings, open, constants);
+  if (!found) return std::nullopt;
+  found->options = given.options;
+  return if_possible<ModelFit>([&] { return refit(recordings, found->model, *found); });
+}
+
+/// Of legs that no fit has seen.
+bool predicts_worse(const std::vector<DrivenRecording>& recordings, const ModelFit& given,
+                    const ModelFit& found, const LegOptions& legs) {
+  constexpr double kNoWorse = 1.05;
+  const auto arrival = [&](const ModelFit& fit) {
+    return if_possible<double>([&] { return predict_held_out(recordings, fit, legs).arrival_rms; });
+  };
+  const std::optional<double> before = arrival(given);
+  const std::optional<double> after = arrival(found);
+  return before && *before > 0.0 && (!after || *after > kNoWorse * *before);
 }
 
 /// What else could leave its trace, at a fit that has it.
@@ -301,18 +382,18 @@ std::vector<LookAlike> look_alikes_at(const std::vector<DrivenRecording>& record
 }  // namespace
 
 std::optional<GrossConstants> gross_constants(const std::vector<DrivenRecording>& recordings,
-                                              const ModelFit& given) {
+                                              const ModelFit& given, const LegOptions& legs) {
   if (given.p_value > kMisfit) return std::nullopt;
   const std::vector<Effect> constants = constants_for(recordings, given);
   if (constants.empty()) return std::nullopt;
   const std::size_t first = given.model.effects.size();
-  const std::optional<ModelFit> all = with_all(recordings, given, constants);
-  if (!all || !matters(*all, first)) return std::nullopt;
-  const std::optional<ModelFit> strong = strong_ones(recordings, *all, first);
-  if (!strong) return std::nullopt;
-  const ModelFit sure = sure_ones(recordings, *strong, first);
-  if (!matters(sure, first) || per_dof(sure) > kMostLeft * per_dof(given)) return std::nullopt;
-  return GrossConstants{surest_first(recordings, with_wheel_scale(recordings, sure, first), first),
+  std::optional<ModelFit> sure = those_that_matter(recordings, given, constants);
+  if (given.options.gate && is_far_off(sure)) {
+    sure = better_of(std::move(sure), those_without_gate(recordings, given, constants));
+  }
+  if (!sure || per_dof(*sure) > kMostLeft * per_dof(given)) return std::nullopt;
+  if (is_far_off(sure) && predicts_worse(recordings, given, *sure, legs)) return std::nullopt;
+  return GrossConstants{surest_first(recordings, with_fewest(recordings, *sure, first), first),
                         first};
 }
 

@@ -12,7 +12,9 @@
 // Those that the data do not surely show, by the scatter that is left, go again. They are kept
 // where they explain most of the misfit and one of the drive's factors is off by 5 % and more, or
 // where a handful of measurements can tell of nothing else; smaller ones are left to the tests of
-// all effects. Without a measured distance no scale is asked for.
+// all effects. Where much is left all the same the gate is lifted while they are sought. One wheel
+// of another size, or all of them, stands for a ratio, a scale and a turning where it explains as
+// much. Without a measured distance no scale is asked for.
 #pragma once
 
 #include "trussmap/diagnose.hpp"
@@ -31,8 +33,9 @@ struct GrossConstants {
 };
 
 /// Nothing where there are none. `given`: the model's fit of these recordings under stated noise.
+/// `legs`: what is held out to judge them by.
 [[nodiscard]] std::optional<GrossConstants> gross_constants(
-    const std::vector<DrivenRecording>& recordings, const ModelFit& given);
+    const std::vector<DrivenRecording>& recordings, const ModelFit& given, const LegOptions& legs);
 
 /// Each as a finding that is missing, with its fitted size and what else could leave its trace.
 /// `given`: the fit without them, under the same noise.

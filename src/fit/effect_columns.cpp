@@ -53,23 +53,25 @@ RowVariables event_variables(const DrivenRecording& recording, const Robot& robo
 
 }  // namespace
 
+void add_noise(const Vector2& missing, double excess, const Robot& robot, RowMotion& row) {
+  Vector2 lacks = missing;
+  if (row.gyro_reads) {
+    // The noise of an excess is the wheels' in part, and the gyro's for the rest.
+    row.gyro_turn += lacks[1] - (1.0 - row.gyro_share) * excess;
+    lacks += excess * Vector2(row.gyro_along, row.gyro_share);
+  }
+  row.add({lacks[0], 0.0, lacks[1]}, robot);
+}
+
 ShapeContext::ShapeContext(const std::vector<DrivenRecording>& recordings, const Robot& robot,
                            const std::vector<SessionPath>& paths)
     : recordings_(recordings), robot_(robot), paths_(paths) {}
 
 RowMotion ShapeContext::motion(std::size_t session, std::size_t row) const {
-  const MotionRows& drive = recordings_[session].drive;
-  RowMotion motion = row_motion(drive, row, robot_);
+  RowMotion motion = row_motion(recordings_[session].drive, row, robot_);
   const SessionPath& path = paths_[session];
   if (path.missing.empty()) return motion;
-  Vector2 lacks = path.missing[row];
-  if (motion.gyro_reads && !path.excess.empty()) {
-    // The noise of an excess is the wheels' in part, and the gyro's for the rest.
-    const double excess = path.excess[row];
-    motion.gyro_turn += lacks[1] - (1.0 - motion.gyro_share) * excess;
-    lacks += excess * Vector2(motion.gyro_along, motion.gyro_share);
-  }
-  motion.add({lacks[0], 0.0, lacks[1]}, robot_);
+  add_noise(path.missing[row], path.excess.empty() ? 0.0 : path.excess[row], robot_, motion);
   return motion;
 }
 

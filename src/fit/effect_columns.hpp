@@ -52,6 +52,9 @@ struct EffectColumns {
   std::vector<Coefficient> coefficients;  ///< one per entry of the border
 };
 
+/// A row without its noise: `missing` and `excess` are as SessionPath has them.
+void add_noise(const Vector2& missing, double excess, const Robot& robot, RowMotion& row);
+
 /// What shapes may speak of, for all sessions.
 class ShapeContext {
  public:

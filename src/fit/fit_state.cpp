@@ -6,6 +6,7 @@
 #include "estimation/segment_noise.hpp"
 #include "estimation/student_tails.hpp"
 #include "fit/fit_stages.hpp"
+#include "fit/noise_under_effects.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 #include "text/number_text.hpp"
 
@@ -72,7 +73,10 @@ double most_moved(const std::vector<SessionPath>& before, const std::vector<Sess
 /// asks for it afterwards.
 FitChange follow(const FitTask& task, Fitting& now) {
   const std::vector<SessionPath> before = std::exchange(now.fit.paths, {});
-  if (now.columns_see_paths()) lay_paths(now.fit);
+  if (now.columns_see_paths()) {
+    lay_paths(now.fit);
+    step_noise_under_effects(before, now.fit);
+  }
   FitChange change;
   change.offsets = relinearised(task, now);
   change.path = most_moved(before, now.fit.paths);

@@ -303,6 +303,7 @@ FittedNoise report(const Question& asked, const NoiseMix& mix, double stated) {
     NoiseSource source = source_of(one);
     if (errors.size() > 0) take_errors(logarithms, errors, k, source);
     source.at_limit = one.free && logarithms.at_limit(k);
+    source.no_noise = one.free && logarithms.at_largest(k);
     result.sources.push_back(std::move(source));
     if (!one.free) continue;
     any = true;

@@ -14,6 +14,8 @@
 namespace trussmap {
 namespace {
 
+constexpr double kNear = 5e-7;  // of a logarithm: at its limit
+
 /// More than effects may be, noise is not either.
 double scale_of(const NoiseComponent& one) {
   return one.lasts() ? facts_of(one.process.channel).prior_sd : kMostOfALaw;
@@ -149,8 +151,16 @@ Eigen::VectorXd NoiseLogarithms::bounded(Eigen::VectorXd values) const {
   return values;
 }
 
+bool NoiseLogarithms::at_largest(std::size_t member) const {
+  const Eigen::VectorXd x = values();
+  for (std::size_t k = 0; k < places_.size(); ++k) {
+    if (places_[k].member != member || places_[k].length) continue;
+    if (x[static_cast<Eigen::Index>(k)] + kNear > ranges_[k].most) return true;
+  }
+  return false;
+}
+
 bool NoiseLogarithms::at_limit(std::size_t member) const {
-  constexpr double kNear = 5e-7;
   const Eigen::VectorXd x = values();
   for (std::size_t k = 0; k < places_.size(); ++k) {
     if (places_[k].member != member) continue;

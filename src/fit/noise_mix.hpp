@@ -66,6 +66,8 @@ class NoiseLogarithms {
   [[nodiscard]] Eigen::VectorXd bounded(Eigen::VectorXd values) const;
   /// Whether a size or a length of the member would go further than it may.
   [[nodiscard]] bool at_limit(std::size_t member) const;
+  /// Whether its size would be larger than is sought.
+  [[nodiscard]] bool at_largest(std::size_t member) const;
 
  private:
   struct Range {

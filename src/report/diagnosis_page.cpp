@@ -72,8 +72,10 @@ std::string page_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence& ev
       if (is_slight_misfit(diagnosis)) return faultless_verdict(diagnosis, legs_end(diagnosis));
       break;
   }
-  const std::string text = "Something is wrong that no effect explains: " +
-                           objection_in_words(evidence.given.comparison) + ".";
+  Comparison misfit = evidence.given.comparison;
+  if (diagnosis.objection == Objection::noise) misfit.objection = Objection::noise;
+  const std::string text =
+      "Something is wrong that no effect explains: " + objection_in_words(misfit) + ".";
   const std::vector<std::string> others = others_notes(diagnosis);
   return others.empty() ? text : text + " " + others.front();
 }

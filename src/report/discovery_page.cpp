@@ -25,6 +25,7 @@ constexpr const char* kModelFound = "as found";
 /// "as given", "+ hard iron".
 std::string step_name(const DiscoveryStep& step) {
   std::string name = step.added ? "+ " + name_in_words(*step.added) : kModelGiven;
+  for (const Effect& other : step.together) name += ", + " + name_in_words(other);
   for (const std::string& dropped : step.dropped) name += ", \u2212 " + dropped;
   return name;
 }
@@ -117,8 +118,10 @@ std::string found_verdict(const Discovery& discovery, const DiscoveryEvidence& e
                                           : "Something is still unexplained.");
   }
   if (is_unexplained(discovery)) {
+    Comparison misfit = now;
+    if (discovery.last.objection == Objection::noise) misfit.objection = Objection::noise;
     return fmt::format("Nothing found, and something is unexplained: {}.{}",
-                       objection_in_words(now), off);
+                       objection_in_words(misfit), off);
   }
   return faultless_verdict(discovery.last, off);
 }

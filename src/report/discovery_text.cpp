@@ -39,6 +39,7 @@ std::string steps_text(const Discovery& result, bool noise_found, TextStyle styl
   }
   for (const DiscoveryStep& step : result.steps) {
     std::string name = step.added ? "+ " + step.added->name : "as given";
+    for (const Effect& other : step.together) name += ", + " + other.name;
     for (const std::string& dropped : step.dropped) name += ", - " + dropped;
     const double before =
         &step == &result.steps.front() ? step.chi2 : (&step - 1)->chi2 - step.predicted_decrease;

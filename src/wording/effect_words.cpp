@@ -228,6 +228,11 @@ std::string in_words(const Effect& effect, const std::vector<double>& sd) {
       const Share share = right_wheel_share(value);
       return sentence(channel, share.larger, share.slope * sd[0]);
     }
+    if (channel == Channel::left || channel == Channel::right) {
+      return fmt::format("the {} wheel is {} {} than nominal{}", name_of(channel),
+                         with_error(100.0 * std::abs(value), 100.0 * sd[0], " %"),
+                         value < 0.0 ? "smaller" : "larger", hint);
+    }
     return sentence(channel, value, sd[0]) + hint;
   }
   if (const auto round = round_of(effect); round && !effect.per_session) {

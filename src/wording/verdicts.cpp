@@ -88,6 +88,13 @@ std::string_view verdict_of(const Discovery& result) {
   return result.consistent ? "consistent" : "unexplained misfit";
 }
 
+namespace {
+
+constexpr const char* kNoNoise =
+    "something lasts that is not noise: it would have to be larger than is sought";
+
+}  // namespace
+
 std::string objection_in_words(const Comparison& result) {
   switch (result.objection) {
     case Objection::none:
@@ -103,6 +110,8 @@ std::string objection_in_words(const Comparison& result) {
     case Objection::trend:
       return "errors are small enough as a whole, but " +
              (result.trends.empty() ? std::string() : goes_with(result.trends.front()));
+    case Objection::noise:
+      return kNoNoise;
     case Objection::effect:
       break;
   }
@@ -144,6 +153,10 @@ std::string verdict_of_all(const Diagnosis& result) {
                       ": errors follow a trend (see trussmap compare), and none of {} effects "
                       "tried explains it",
                       result.tried);
+  }
+  if (result.objection == Objection::noise) {
+    return text +
+           fmt::format(": {}, and none of {} effects tried explains it", kNoNoise, result.tried);
   }
   if (is_slight_misfit(result)) {
     return text + fmt::format(

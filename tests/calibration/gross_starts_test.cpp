@@ -7,6 +7,7 @@
 #include "calibration/wheel_calibration.hpp"
 #include "driven.hpp"
 #include "trussmap/catalogue.hpp"
+#include "trussmap/fit_model.hpp"
 #include "trussmap/simulated_recording.hpp"
 
 #include <algorithm>
@@ -85,12 +86,30 @@ WheelCalibration calibrated(const std::string& constant, double g) {
 }
 
 TEST(SlowGrossCalibration, FindsATrackWrongByAFactor) {
-  for (const double g : {-0.7, -0.5, -0.2, 0.25}) {
+  for (const double g : {-0.7, -0.5, -0.2, 0.25, 2.0}) {
     const WheelCalibration found = calibrated("wheelbase", g);
     ASSERT_TRUE(found.wheelbase_ratio) << g;
     EXPECT_NEAR(found.wheelbase_ratio->value, 1.0 / (1.0 + g), 4.0 * found.wheelbase_ratio->sd);
     EXPECT_LT(found.wheelbase_ratio->sd, 0.004 / (1.0 + g)) << g;
   }
+}
+
+TEST(SlowGrossCalibration, FindsWheelsOfTwoSizesBesideATrackThatIsTwiceAsWide) {
+  SimulationSettings settings;
+  settings.mesh = "4x4";
+  settings.tours = 2;
+  settings.seed = kSeed;
+  settings.no_compass = true;
+  const SimulatedRecording one = simulate(
+      settings,
+      {catalogue_effect("wheelbase", {1.0}), catalogue_effect("wheel diameter ratio", {0.1})});
+  const WheelCalibration found =
+      calibrate_wheels({one.drive.recording}, one.model, CalibrationOptions());
+  ASSERT_TRUE(found.wheelbase_ratio && found.diameter_ratio);
+  // Effects of a model add: of the turning 0.1 is of what is not yet doubled.
+  EXPECT_NEAR(found.wheelbase_ratio->value, 0.5, 4.0 * found.wheelbase_ratio->sd);
+  EXPECT_NEAR(found.diameter_ratio->value, 1.05 / 0.95, 0.06);
+  EXPECT_LT(found.diameter_ratio->sd, 0.001);
 }
 
 TEST(SlowGrossCalibration, FindsOneWheelTwiceAsLarge) {
@@ -99,6 +118,22 @@ TEST(SlowGrossCalibration, FindsOneWheelTwiceAsLarge) {
   ASSERT_TRUE(found.diameter_ratio);
   EXPECT_NEAR(found.diameter_ratio->value, 2.0, 4.0 * found.diameter_ratio->sd);
   EXPECT_LT(found.diameter_ratio->sd, 0.002);
+}
+
+/// With its noise: what a row's noise does under a factor has to come to rest, whatever the factor.
+TEST(GrossFit, AModelWithTheRightFactorFits) {
+  for (const double g : {-0.7, 1.0, 2.0, 4.0}) {
+    const SimulatedRecording one = driven("wheelbase", g, Equipment{true});
+    Model model = one.model;
+    model.effects = {catalogue_effect("wheelbase", {g})};
+    FitOptions options;
+    options.fit_effects = false;
+    const ModelFit fit = fit_model({one.drive.recording}, model, options);
+    // Noise of the turning grows with the factor, which no covariance knows.
+    EXPECT_LT(fit.chi2 / fit.dof, std::max(2.0, 2.0 * (1.0 + g))) << g;
+    model.effects[0].coefficients = {1.3 * g};
+    EXPECT_GT(fit_model({one.drive.recording}, model, options).chi2, 10.0 * fit.chi2) << g;
+  }
 }
 
 }  // namespace

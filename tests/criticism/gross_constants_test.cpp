@@ -48,19 +48,20 @@ std::vector<std::string> names_in(const GrossConstants& constants) {
 
 TEST(GrossConstants, AreNoneWhereNothingIsMissing) {
   const SimulatedRecording one = simulate(small_world(4), {});
-  EXPECT_FALSE(gross_constants({testing::driven(one.drive.recording)}, given(one)));
+  EXPECT_FALSE(gross_constants({testing::driven(one.drive.recording)}, given(one), LegOptions{}));
 }
 
 TEST(SlowGrossConstants, AreNoneWhereAnErrorIsSmall) {
   const SimulatedRecording one = simulate(small_world(4), {catalogue_effect("wheelbase", {0.02})});
-  EXPECT_FALSE(gross_constants({testing::driven(one.drive.recording)}, given(one)));
+  EXPECT_FALSE(gross_constants({testing::driven(one.drive.recording)}, given(one), LegOptions{}));
 }
 
 TEST(SlowGrossConstants, AreTheRightOnesWithTheRightSizes) {
   for (const auto& [name, g] : {std::pair{"travel scale", 1.0}, std::pair{"wheel scale", 0.25},
                                 std::pair{"wheel diameter ratio", 0.1}}) {
     const SimulatedRecording one = simulate(small_world(5), {catalogue_effect(name, {g})});
-    const auto found = gross_constants({testing::driven(one.drive.recording)}, given(one));
+    const auto found =
+        gross_constants({testing::driven(one.drive.recording)}, given(one), LegOptions{});
     ASSERT_TRUE(found) << name;
     EXPECT_EQ(names_in(*found), std::vector<std::string>{name});
     const EffectEstimate& size = found->fit.effects.back();
@@ -69,11 +70,37 @@ TEST(SlowGrossConstants, AreTheRightOnesWithTheRightSizes) {
   }
 }
 
+TEST(SlowGrossConstants, AWheelOfAnotherSizeIsOneConstant) {
+  // Far off, and under a gate: of a wheel a fifth as large, and of one three times as large.
+  for (const auto& [channel, g] :
+       {std::pair{Channel::left, -0.8}, std::pair{Channel::right, 2.0}}) {
+    const SimulatedRecording one = simulate(small_world(6), {Effect{"wheel", channel, {"1"}, {g}}});
+    const std::vector<DrivenRecording> driven{testing::driven(one.drive.recording)};
+    const auto found =
+        gross_constants(driven, fit_model(driven, one.model, gated_fit()), LegOptions{});
+    ASSERT_TRUE(found) << g;
+    EXPECT_EQ(names_in(*found),
+              std::vector<std::string>{channel == Channel::left ? "left wheel" : "right wheel"});
+    EXPECT_EQ(found->fit.model.effects.back().channel, channel);
+    EXPECT_NEAR(found->fit.model.effects.back().coefficients.at(0), g, 0.01 * (1.0 + g));
+  }
+}
+
+TEST(SlowGrossConstants, TurningThreeTimesAsMuchAsStatedIsAWheelbase) {
+  const SimulatedRecording one = simulate(small_world(33), {catalogue_effect("wheelbase", {2.0})});
+  const auto found =
+      gross_constants({testing::driven(one.drive.recording)}, given(one), LegOptions{});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(names_in(*found), std::vector<std::string>{"wheelbase"});
+  EXPECT_NEAR(found->fit.model.effects.back().coefficients.at(0), 2.0, 0.03);
+}
+
 TEST(SlowGrossConstants, AskForNoScaleThatNothingMeasures) {
   SimulationSettings settings = small_world(5);
   settings.no_survey = true;
   const SimulatedRecording one = simulate(settings, {catalogue_effect("wheelbase", {-0.2})});
-  const auto found = gross_constants({testing::driven(one.drive.recording)}, given(one));
+  const auto found =
+      gross_constants({testing::driven(one.drive.recording)}, given(one), LegOptions{});
   ASSERT_TRUE(found);
   EXPECT_EQ(names_in(*found), std::vector<std::string>{"wheelbase"});
 }
@@ -84,7 +111,7 @@ TEST(SlowGrossConstants, ALoadThatLastsForALegIsNoConstant) {
   settings.covariates = {"slack"};
   const SimulatedRecording one =
       simulate(settings, {Effect{"slack", Channel::travel, {"slack-0.5"}, {0.08}}});
-  EXPECT_FALSE(gross_constants({testing::driven(one.drive.recording)}, given(one)));
+  EXPECT_FALSE(gross_constants({testing::driven(one.drive.recording)}, given(one), LegOptions{}));
 }
 
 TEST(GrossConstants, LeadADiagnosisWithTheirFittedSizes) {
