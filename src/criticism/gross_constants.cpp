@@ -6,6 +6,7 @@
 #include "calibration/wheel_calibration.hpp"
 #include "criticism/candidates.hpp"
 #include "criticism/effect_strength.hpp"
+#include "criticism/gross_cause.hpp"
 #include "criticism/look_alikes.hpp"
 #include "criticism/refits.hpp"
 #include "effects/channel_physics.hpp"
@@ -379,11 +380,9 @@ std::vector<LookAlike> look_alikes_at(const std::vector<DrivenRecording>& record
   return alike;
 }
 
-}  // namespace
-
-std::optional<GrossConstants> gross_constants(const std::vector<DrivenRecording>& recordings,
-                                              const ModelFit& given, const LegOptions& legs) {
-  if (given.p_value > kMisfit) return std::nullopt;
+/// Nothing where there are none, or they do not explain much.
+std::optional<GrossConstants> sure_constants(const std::vector<DrivenRecording>& recordings,
+                                             const ModelFit& given, const LegOptions& legs) {
   const std::vector<Effect> constants = constants_for(recordings, given);
   if (constants.empty()) return std::nullopt;
   const std::size_t first = given.model.effects.size();
@@ -395,6 +394,21 @@ std::optional<GrossConstants> gross_constants(const std::vector<DrivenRecording>
   if (is_far_off(sure) && predicts_worse(recordings, given, *sure, legs)) return std::nullopt;
   return GrossConstants{surest_first(recordings, with_fewest(recordings, *sure, first), first),
                         first};
+}
+
+}  // namespace
+
+std::optional<GrossConstants> gross_constants(const std::vector<DrivenRecording>& recordings,
+                                              const ModelFit& given, const LegOptions& legs) {
+  if (given.p_value > kMisfit) return std::nullopt;
+  std::optional<GrossConstants> constants = sure_constants(recordings, given, legs);
+  if (constants && per_dof(constants->fit) < kLittleLeft) return constants;
+  const bool scale =
+      measures_distance(recordings, fitter_options(given.options).problem, given.model.noise);
+  if (std::optional<ModelFit> cause = gross_cause(recordings, given, scale)) {
+    return GrossConstants{*std::move(cause), given.model.effects.size()};
+  }
+  return constants;
 }
 
 namespace {

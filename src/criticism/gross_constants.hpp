@@ -14,7 +14,8 @@
 // where a handful of measurements can tell of nothing else; smaller ones are left to the tests of
 // all effects. Where much is left all the same the gate is lifted while they are sought. One wheel
 // of another size, or all of them, stands for a ratio, a scale and a turning where it explains as
-// much. Without a measured distance no scale is asked for.
+// much. Where constants leave much one error of another kind may explain it (gross_cause.hpp).
+// Without a measured distance no scale is asked for.
 #pragma once
 
 #include "trussmap/diagnose.hpp"

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/gross_cause.hpp"
+
+#include "criticism/candidates.hpp"
+#include "criticism/effect_strength.hpp"
+#include "criticism/score_test.hpp"
+#include "fit/fit_state.hpp"
+#include "odometry/wheels_and_gyro.hpp"
+#include "trussmap/error.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+constexpr double kGrossMisfit = 10.0;  // chi^2/dof of the fit without
+constexpr std::size_t kMostMeasurements = 20000;
+
+/// Without coefficients.
+std::vector<Effect> causes_for(const ModelFit& given, const ScoreTest& tests, bool scale) {
+  const FitState& fit = *given.state;
+  const bool gyro = has_gyro(fit.recordings);
+  std::vector<Effect> result;
+  for (const Candidate& one : candidates_for(fit, tests.context())) {
+    const CatalogueRecord* record = record_of(one);
+    const Channel channel = one.effect.channel;
+    if (record == nullptr || !one.family.empty() || record->entry.of_covariate()) continue;
+    const bool turns = channel == Channel::turn || channel == Channel::rotate ||
+                       channel == Channel::difference || channel == Channel::drift;
+    const bool moves = channel == Channel::travel || channel == Channel::advance ||
+                       channel == Channel::wheels || channel == Channel::sideways;
+    if (!turns && !moves) continue;
+    if (gyro && channel == Channel::drift) continue;  // its bias is what drifts
+    if (moves && !scale) continue;
+    if (!tests.is_present(one.effect)) result.push_back(one.effect);
+  }
+  return result;
+}
+
+/// Nothing where it cannot be fitted, or leaves much. Without a gate: far from the best fit what is
+/// right contradicts all others.
+std::optional<ModelFit> fitted_alone(const std::vector<DrivenRecording>& recordings,
+                                     const ModelFit& given, const Effect& effect) {
+  Model model = given.model;
+  model.effects.push_back(effect);
+  FitOptions open = given.options;
+  open.gate.reset();
+  try {
+    const ModelFit found = fit_model(recordings, model, open);
+    if (found.chi2 > kLittleLeft * std::max(1, found.dof)) return std::nullopt;
+    if (!found.effects.back().not_fitted.empty()) return std::nullopt;
+    return fit_model(recordings, found.model, given.options);
+  } catch (const SolveError&) {
+    return std::nullopt;
+  } catch (const InputError&) {
+    return std::nullopt;
+  } catch (const std::invalid_argument&) {  // a factor that leaves no travel
+    return std::nullopt;
+  }
+}
+
+/// From nothing, then from a quarter more and less of the motion: a fit from nothing may be lost.
+std::optional<ModelFit> fitted_from_starts(const std::vector<DrivenRecording>& recordings,
+                                           const ModelFit& given, const ScoreTest& tests,
+                                           Effect effect) {
+  constexpr double kStart = 0.25;
+  std::optional<ModelFit> fit = fitted_alone(recordings, given, effect);
+  const bool gain = effect.channel == Channel::turn || effect.channel == Channel::travel;
+  if (fit || !gain || effect.shape.size() != 1) return fit;
+  const std::vector<double> largest = tests.test({effect}).front().largest;
+  if (largest.empty() || !(largest.front() > 0.0)) return fit;
+  for (const double start : {kStart, -kStart}) {
+    effect.coefficients = {start / largest.front()};
+    if (fit = fitted_alone(recordings, given, effect); fit) return fit;
+  }
+  return fit;
+}
+
+double cost_of(const ModelFit& fit) {
+  constexpr double kPerCoefficient = 4.0;  // of chi^2
+  const Effect& effect = fit.model.effects.back();
+  return chi2_of_all(fit) + kPerCoefficient * static_cast<double>(effect.shape.size());
+}
+
+}  // namespace
+
+std::optional<ModelFit> gross_cause(const std::vector<DrivenRecording>& recordings,
+                                    const ModelFit& given, bool scale) {
+  const FitState& state = *given.state;
+  if (given.chi2 < kGrossMisfit * std::max(1, given.dof)) return std::nullopt;
+  if (state.problem.measurements.size() > kMostMeasurements) return std::nullopt;
+  const ScoreTest tests(state);
+  std::optional<ModelFit> best;
+  for (const Effect& cause : causes_for(given, tests, scale)) {
+    std::optional<ModelFit> fit = fitted_from_starts(recordings, given, tests, cause);
+    if (fit && (!best || cost_of(*fit) < cost_of(*best))) best = std::move(fit);
+  }
+  return best;
+}
+
+}  // namespace trussmap
