@@ -173,9 +173,11 @@ Model with_constants(const Model& model, const std::vector<double>& g) {
 
 double share_before_turning(const std::vector<SoughtConstant>& constants,
                             const std::vector<double>& g, std::size_t which) {
+  constexpr double kLeastTurn = 0.1;  // of what is stated: else it turns the wrong way round
   if (constants[which].channel != Channel::difference) return 1.0;
   for (std::size_t k = 0; k < constants.size(); ++k) {
-    if (constants[k].channel == Channel::turn) return 1.0 / (1.0 + g[k]);
+    if (constants[k].channel != Channel::turn) continue;
+    return g[k] > kLeastTurn - 1.0 ? 1.0 / (1.0 + g[k]) : 1.0;
   }
   return 1.0;
 }

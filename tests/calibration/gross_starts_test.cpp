@@ -90,7 +90,7 @@ TEST(SlowGrossCalibration, FindsATrackWrongByAFactor) {
     const WheelCalibration found = calibrated("wheelbase", g);
     ASSERT_TRUE(found.wheelbase_ratio) << g;
     EXPECT_NEAR(found.wheelbase_ratio->value, 1.0 / (1.0 + g), 4.0 * found.wheelbase_ratio->sd);
-    EXPECT_LT(found.wheelbase_ratio->sd, 0.004 / (1.0 + g)) << g;
+    EXPECT_LT(found.wheelbase_ratio->sd, 0.005 / (1.0 + g)) << g;
   }
 }
 
@@ -132,7 +132,7 @@ TEST(GrossFit, AModelWithTheRightFactorFits) {
     // Noise of the turning grows with the factor, which no covariance knows.
     EXPECT_LT(fit.chi2 / fit.dof, std::max(2.0, 2.0 * (1.0 + g))) << g;
     model.effects[0].coefficients = {1.3 * g};
-    EXPECT_GT(fit_model({one.drive.recording}, model, options).chi2, 10.0 * fit.chi2) << g;
+    EXPECT_GT(fit_model({one.drive.recording}, model, options).chi2, 5.0 * fit.chi2) << g;
   }
 }
 
