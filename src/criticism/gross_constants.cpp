@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -30,6 +31,8 @@ constexpr double kMisfit = 1e-6;       // p of chi^2, below which they are asked
 constexpr double kFarTooLarge = 10.0;  // chi^2/dof
 constexpr double kMostLeft = 0.5;      // of chi^2/dof, beside them
 constexpr double kGross = 0.05;        // of a factor
+constexpr double kFarPlace = 0.3;      // m off: no handbreadth
+constexpr double kFarYaw = 0.2;        // rad
 
 bool is_motion(Channel channel) {
   return channel == Channel::travel || channel == Channel::turn || channel == Channel::sideways;
@@ -125,41 +128,95 @@ DriveFactors factors_of(const Model& calibrated) {
   return result;
 }
 
-/// The constants as a calibration of the drive has them, where it leads anywhere, as a start;
-/// nothing where none of them is gross.
-std::optional<std::vector<Effect>> start_of_constants(
-    const std::vector<DrivenRecording>& recordings, const ModelFit& given,
-    std::vector<Effect> constants) {
+/// How far sensors are from where they are stated to sit, by the channel that says so.
+std::map<Channel, double> places_off(const WheelCalibration& found, const Robot& stated) {
+  std::map<Channel, double> result;
+  const auto add = [&](const std::optional<Calibrated>& value, double was, Channel channel,
+                       double sign = 1.0) {
+    if (value) result[channel] = sign * (value->value - was);
+  };
+  for (const CalibratedMounting& one : found.mountings) {
+    const Mountings& mounted = stated.mounted;
+    if (one.of == "antenna") {
+      const Mounting was = mounted.antenna.value_or(Mounting());
+      add(one.x, was.x, Channel::antenna);
+      add(one.y, was.y, Channel::antenna_left);
+    } else if (one.of == "scanner") {
+      const Mounting was = mounted.scanner.value_or(Mounting());
+      add(one.x, was.x, Channel::scanner);
+      add(one.y, was.y, Channel::scanner_left);
+      add(one.yaw, was.yaw, Channel::scanner_yaw);
+    } else {
+      const bool sensor = one.of == "sensor";
+      const Mounting was = (sensor ? mounted.sensor : mounted.tracked).value_or(Mounting());
+      add(one.x, was.x, Channel::lever);
+      add(one.y, was.y, Channel::lever_left);
+      add(one.yaw, was.yaw, sensor ? Channel::bearing : Channel::truth_heading,
+          sensor ? -1.0 : 1.0);
+    }
+  }
+  return result;
+}
+
+bool is_far_place(Channel channel, double g) {
+  using enum Channel;
+  const bool turned = channel == scanner_yaw || channel == bearing || channel == truth_heading;
+  const bool place = channel == lever || channel == lever_left || channel == antenna ||
+                     channel == antenna_left || channel == scanner || channel == scanner_left;
+  return (place && std::abs(g) >= kFarPlace) || (turned && std::abs(g) >= kFarYaw);
+}
+
+/// The constants as a calibration of the drive has them, where it leads anywhere, as a start.
+struct CalibratedStart {
+  std::vector<Effect> constants;
+  bool found = false;
+  bool gross = false;       ///< one of the drive's factors is
+  bool far_places = false;  ///< a sensor sits far from where it is stated to
+};
+
+CalibratedStart start_of_constants(const std::vector<DrivenRecording>& recordings,
+                                   const ModelFit& given, std::vector<Effect> constants) {
   WheelCalibrationOptions options;
   options.problem = fitter_options(given.options).problem;
   options.noise = false;
   const auto found = if_possible<WheelCalibration>(
       [&] { return calibrate_wheels(recordings, given.model, options); });
-  if (!found) return constants;
+  if (!found) return {std::move(constants)};
   const DriveFactors factors = factors_of(found->model);
-  if (std::max({std::abs(factors.travel), std::abs(factors.turn), std::abs(factors.difference)}) <
-      kGross) {
-    return std::nullopt;
-  }
-  for (Effect& one : constants) {
+  const double most =
+      std::max({std::abs(factors.travel), std::abs(factors.turn), std::abs(factors.difference)});
+  CalibratedStart result{std::move(constants), true, most >= kGross};
+  const std::map<Channel, double> places = places_off(*found, given.model.robot);
+  for (Effect& one : result.constants) {
     one.coefficients.assign(one.shape.size(), 0.0);
     if (one.channel == Channel::travel) one.coefficients = {factors.travel};
     if (one.channel == Channel::turn) one.coefficients = {factors.turn};
     if (one.channel == Channel::difference) one.coefficients = {factors.difference};
+    if (const auto place = places.find(one.channel); place != places.end()) {
+      one.coefficients = {place->second};
+      result.far_places = result.far_places || is_far_place(one.channel, place->second);
+    }
   }
-  return constants;
+  return result;
 }
 
 /// All of them at once.
 std::optional<ModelFit> with_all(const std::vector<DrivenRecording>& recordings,
                                  const ModelFit& given, const std::vector<Effect>& constants) {
-  std::optional<ModelFit> best =
-      if_possible<ModelFit>([&] { return refit_with(recordings, given, constants); });
-  if (!is_far_off(best)) return best;
-  if (const auto from = start_of_constants(recordings, given, constants)) {
-    best = better_of(best, fitted_afresh(recordings, given, *from));
+  std::optional<CalibratedStart> start;
+  std::optional<ModelFit> best;
+  if (is_far_off(given)) {
+    start = start_of_constants(recordings, given, constants);
+    // About a fit that has a sensor metres off no other fit can begin.
+    if (start->far_places) best = fitted_afresh(recordings, given, start->constants);
+    if (!is_far_off(best)) return best;
   }
-  return best;
+  best = better_of(std::move(best),
+                   if_possible<ModelFit>([&] { return refit_with(recordings, given, constants); }));
+  if (!is_far_off(best)) return best;
+  if (!start) start = start_of_constants(recordings, given, constants);
+  if (start->found && !start->gross) return best;
+  return better_of(best, fitted_afresh(recordings, given, start->constants));
 }
 
 /// The same fit with other effects from `first` on, their coefficients as found.
@@ -207,7 +264,8 @@ std::optional<ModelFit> strong_ones(const std::vector<DrivenRecording>& recordin
 }
 
 bool is_gross(const Effect& one) {
-  return is_factor(one.channel) && std::abs(one.coefficients.front()) >= kGross;
+  const double g = one.coefficients.front();
+  return (is_factor(one.channel) && std::abs(g) >= kGross) || is_far_place(one.channel, g);
 }
 
 /// Without those that a fit without them does hardly worse than: a standard error is of the plane
