@@ -22,6 +22,7 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -89,6 +90,20 @@ ordered_json json_of(const CalibrationValidation& held) {
           {"arrival_rms_nominal_m", judged ? ordered_json(held.nominal.rms()) : ordered_json()}};
 }
 
+ordered_json json_of(const std::vector<CalibratedMounting>& mountings) {
+  ordered_json out = ordered_json::object();
+  for (const CalibratedMounting& one : mountings) {
+    ordered_json place;
+    for (const auto& [name, value] :
+         {std::pair("x", &one.x), std::pair("y", &one.y), std::pair("yaw", &one.yaw)}) {
+      place[name] = *value ? ordered_json((*value)->value) : ordered_json();
+      place[std::string("sd_") + name] = *value ? ordered_json((*value)->sd) : ordered_json();
+    }
+    out[one.of] = place;
+  }
+  return out;
+}
+
 ordered_json json_of(const WheelCalibration& found, const CalibrationValidation& held,
                      const std::optional<TestedDrives>& test) {
   ordered_json out;
@@ -130,6 +145,7 @@ ordered_json json_of(const WheelCalibration& found, const CalibrationValidation&
     out["fixes"] = {
         {"ahead_m", found.fixes.ahead}, {"left_m", found.fixes.left}, {"sessions", late}};
   }
+  if (!found.mountings.empty()) out["mountings"] = json_of(found.mountings);
   out["settled"] = found.settled;
   out["undetermined"] = found.undetermined;
   return out;

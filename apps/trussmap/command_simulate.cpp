@@ -112,6 +112,7 @@ void setup_simulate(const Command& app) {
   add_simulate_options(command, *options);
   command.callback([options, command] {
     check_drive_options(command, *options);
+    options->mounted = mounted_by(*options);
     if (options->hide && command.count("--seed") == 0) {
       options->seed = std::random_device()();
       options->seed_drawn = true;

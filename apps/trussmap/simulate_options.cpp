@@ -182,6 +182,24 @@ void add_sensor_options(const Command& command, SimulateOptions& options) {
                    "its yaw, and the survey its heading");
   add_positive(command, "--yaw-noise", options.yaw_noise,
                "Standard deviation of a landmark's yaw [rad]");
+  command
+      .add_option("--scans", options.scan_every,
+                  "Scan matching also tells the motion from scan to scan, so long each [s] "
+                  "(loops.csv)")
+      .check(zero_or_more());
+  const auto add_place = [&](const char* name, std::vector<double>& place, int count,
+                             const char* help) {
+    command.add_option(name, place, help)
+        .delimiter(',')
+        .expected(count)
+        .type_name(count == 2 ? "X,Y" : "X,Y,YAW");
+  };
+  add_place("--sensor", options.sensor, 3,
+            "Where the sensor of sightings sits, as model.toml states it: ahead of the axle's "
+            "centre, to its left [m], looking so far to the left [rad]");
+  add_place("--antenna", options.antenna, 2, "Where the antenna sits that fixes are of [m]");
+  add_place("--scanner", options.scanner, 3,
+            "Where the scanner sits whose motion loops tell, and looks");
   add_positive(command, "--reach", options.reach, "Reach of the range sensor [m]");
 }
 
@@ -198,6 +216,18 @@ void check_drive_options(const Command& command, const SimulateOptions& options)
   refuse_unless("--length", {"tricycle", "ackermann", "omni3", "mecanum", "wheels"});
   refuse_unless("--wheel-left", {"ackermann"});
   refuse_unless("--steer-noise", {"tricycle", "ackermann"});
+}
+
+Mountings mounted_by(const SimulateOptions& options) {
+  const auto place = [](const std::vector<double>& at) -> std::optional<Mounting> {
+    if (at.empty()) return std::nullopt;
+    return Mounting{at[0], at[1], at.size() > 2 ? at[2] : 0.0};
+  };
+  Mountings mounted;
+  mounted.sensor = place(options.sensor);
+  mounted.antenna = place(options.antenna);
+  mounted.scanner = place(options.scanner);
+  return mounted;
 }
 
 void add_simulate_options(const Command& command, SimulateOptions& options) {

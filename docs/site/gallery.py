@@ -26,7 +26,7 @@ from pages import TOP, slug_of
 EFFECTS = TOP / "src/effects/catalogue"
 WORLD = "--mesh 4x4 --uneven --tours 2"
 GROUPS = ("Wheels", "Turning", "Floor and slip", "Gears and encoders", "Gyro", "Compass", "Sightings",
-          "Truth and fixes", "Other drives")
+          "Truth and fixes", "Loops", "Other drives")
 FIELDS = ("group", "happens", "look", "effect")
 
 # What a row's motion or reading becomes.
@@ -55,6 +55,9 @@ CHANNELS = {
     "truth_heading": r"\theta_{\text{truth}} = \theta + g",
     "antenna": r"\text{antenna} = \text{axle} + g\ \text{ahead}",
     "antenna_left": r"\text{antenna} = \text{axle} + g\ \text{to the left}",
+    "scanner": r"\text{scanner} = \text{axle} + g\ \text{ahead}",
+    "scanner_left": r"\text{scanner} = \text{axle} + g\ \text{to the left}",
+    "scanner_yaw": r"\theta_{\text{scanner}} = \theta + g",
     "fix_delay": r"t_{\text{stamp}} = t + g",
     "sideways": r"\mathrm{d}s'_{\text{left}} = \mathrm{d}s_{\text{left}}\,(1+g)",
     "steer": r"\beta' = \beta + g",

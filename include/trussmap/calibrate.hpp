@@ -27,7 +27,10 @@
 // reported as undetermined (of a steering's gain, 0.03 of it).
 //
 // How truth and fixes are mounted and clocked is estimated with the wheels (TruthAlignment,
-// FixAlignment): rows that are late, or whose clock drifts, look like wheel errors otherwise.
+// FixAlignment): rows that are late, or whose clock drifts, look like wheel errors otherwise. So is
+// the place of a sensor that sees landmarks from afar, and of the scanner whose motion loops tell
+// (Censi, Franchi, Marchionni & Oriolo 2013), from where the model states them: what is found goes
+// back into Robot::mounted.
 //
 // Fails where the truth contradicts the wheels: with headings turned by more than about 90 degrees,
 // or counted clockwise, the least chi^2 lies at a negative wheelbase or travel. No robot has that,
@@ -85,6 +88,14 @@ struct FixAlignment {
   std::map<int, double> late;  ///< s, by session; none where no fix was used
 };
 
+/// Where a sensor was found to sit, as Mountings have it; nothing of what the motion does not tell.
+struct CalibratedMounting {
+  std::string of;                      ///< "sensor", "antenna", "tracked" or "scanner"
+  std::optional<Calibrated> x = {};    ///< m ahead of the axle's centre
+  std::optional<Calibrated> y = {};    ///< m to its left
+  std::optional<Calibrated> yaw = {};  ///< rad
+};
+
 /// A constant of a drive with other wheels than two: g of its channel, with the shape 1.
 struct DriveConstant {
   Channel channel = Channel::turn;
@@ -101,6 +112,8 @@ struct WheelCalibration {
   Model model;                                ///< the given one with all of that in it
   TruthAlignment truth;
   FixAlignment fixes;
+  std::vector<CalibratedMounting> mountings =
+      {};  ///< of the sensors that measured; in the model, too
   double chi2 = 0.0;
   int dof = 0;
   /// False where the last round still moved an estimate by more than a tenth of its standard error:

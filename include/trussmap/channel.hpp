@@ -12,6 +12,7 @@
 //   delay             stamped g late                          truth_heading   truth's heading + g
 //   gyro              yaw rate read = rate + g     gyro_scale             gyro's turn (1 + g)
 //   antenna, antenna_left   the point of the robot that a fix has
+//   scanner, scanner_left, scanner_yaw   where what loops are of sits on the robot, and looks
 //   sideways          travel to the left (1 + g)   wheel1 ... wheel6     that wheel's (1 + g)
 //   steer             steering angle + g           steer_gain            steering angle (1 + g)
 //   fix_delay         fixes are stamped g late                fix_x, fix_y    fix = position + g
@@ -62,7 +63,10 @@ enum class Channel {
   wheel6,
   steer,
   steer_gain,
-  sighting_yaw
+  sighting_yaw,
+  scanner,
+  scanner_left,
+  scanner_yaw
 };
 
 /// wheel1 is 0, wheel6 is 5; nothing of other channels.

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -67,6 +68,27 @@ struct WheelPlace {
   double roller = 0.0;     ///< rad from the direction to the rollers' axes; omni wheels: 0
 };
 
+/// Where something sits on the robot, from its body's reference point, the axle's centre.
+struct Mounting {
+  double x = 0.0;    ///< m ahead
+  double y = 0.0;    ///< m to the left
+  double yaw = 0.0;  ///< rad by which it looks further left than the robot
+
+  friend bool operator==(const Mounting& a, const Mounting& b) = default;
+};
+
+/// Where the sensors are believed to sit, one for each kind of measurement: effects (lever,
+/// antenna, scanner, ...) add to it. Where nothing is stated: at the reference point, looking
+/// ahead.
+struct Mountings {
+  std::optional<Mounting> sensor = {};   ///< what sightings are seen by, or stands on landmarks
+  std::optional<Mounting> antenna = {};  ///< what fixes are of; it has no yaw
+  std::optional<Mounting> tracked = {};  ///< what the truth tracks
+  std::optional<Mounting> scanner = {};  ///< the axes in which loops tell its motion
+
+  friend bool operator==(const Mountings& a, const Mountings& b) = default;
+};
+
 struct Robot {
   double wheelbase = 0.34;       ///< m, nominal
   bool wheelbase_stated = true;  ///< else a model file left it out, and it is the default
@@ -78,6 +100,7 @@ struct Robot {
   double wheel_left = 0.0;              ///< m, ackermann: the measured wheel's y
   std::vector<WheelPlace> places = {};  ///< of `wheels`; empty: the matrix is given
   Eigen::MatrixXd matrix = {};          ///< of `wheels`: 3 x columns
+  Mountings mounted = {};               ///< its sensors
 };
 
 /// The matrix that wheels at these places have: of least squares where more than needed. Wheels

@@ -61,7 +61,9 @@ struct SimulationSettings {
   bool true_rates = false;  ///< effects follow the true rates, else the recorded ones
   bool hide = false;        ///< effects are drawn from the catalogue
   bool loops = false;
-  bool markers = false;  ///< landmarks have an axis
+  double scan_every = 0.0;  ///< s: loops from scan to scan; 0: none
+  Mountings mounted = {};   ///< where the sensors sit, as stated and in truth
+  bool markers = false;     ///< landmarks have an axis
 };
 
 /// A recording and what was simulated in it.

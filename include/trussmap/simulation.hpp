@@ -252,6 +252,7 @@ struct WheeledRobot {
   double fix_rate = 0.0;     ///< Hz: fixes of its antenna; 0: none
   /// At each stop it also measures its pose from the last stop at the same landmark.
   bool loops = false;
+  double scan_every = 0.0;  ///< s: loops from scan to scan, one after the other; 0: none
   /// Landmarks have an axis, as tags and floor codes do: each sighting reads its yaw, and the
   /// survey its heading.
   bool markers = false;

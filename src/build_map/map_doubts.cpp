@@ -188,6 +188,17 @@ void doubt_fit(BuiltMap& built, const MapFitState& best) {
                             ", though hardly more than noise: " + freed);
     }
   }
+  if (best.antenna) {
+    const Mounting& at = best.antenna->place;
+    warnings.push_back(joined("the antenna of the fixes sits ", signed_text(at.x, 3),
+                              " m ahead of "
+                              "the axle's centre and ",
+                              signed_text(at.y, 3), " m to its left (+- ",
+                              fixed_text(best.antenna->sd, 3),
+                              "), by the sightings, and is taken "
+                              "to be there: the model has it at the centre; state [robot.antenna], "
+                              "or calibrate"));
+  }
   const double share = built.quality.left_out_share;
   if (std::isinf(fit.gate_widened)) {
     warnings.push_back("so many " + words.of +

@@ -69,12 +69,16 @@ bool are_paths_alone(const std::vector<DrivenRecording>& recordings) {
   });
 }
 
-MapFitState fit_map(const std::vector<DrivenRecording>& recordings, const Model& model,
+MapFitState fit_map(const std::vector<DrivenRecording>& recordings, const Model& given,
                     const std::optional<double>& gate) {
   FitterOptions how = options_for(gate);
+  Model model = given;
+  const std::optional<AntennaFound> antenna = antenna_by_sightings(recordings, model, how);
+  if (antenna) model.robot.mounted.antenna = antenna->place;
   how.free_common_errors = true;
   how.paths = are_paths_alone(recordings);
   MapFitState result;
+  result.antenna = antenna;
   result.fit = fit_recordings(recordings, model, how);
   result.p_freed = p_value_of_common_errors(result.fit);
   if (result.p_freed < kFreed) {

@@ -11,10 +11,12 @@
 // contradict alike speak against the model: none is left out then (recording_robust.hpp).
 #pragma once
 
+#include "build_map/antenna_place.hpp"
 #include "build_map/sighted_drive.hpp"
 #include "fit/fit_state.hpp"
 #include "trussmap/build_map.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace trussmap {
@@ -24,6 +26,7 @@ struct MapFitState {
   FitState fit;
   std::vector<FreedError> freed;
   double p_freed = 1.0;  ///< chance of common errors as large where there are none
+  std::optional<AntennaFound> antenna = {};  ///< off the axle, and taken to be there
 };
 
 /// No sightings, but fixes or loops in each: there are paths to build, and no map.

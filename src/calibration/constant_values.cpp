@@ -5,6 +5,7 @@
 #include "effects/channel_physics.hpp"
 
 #include <cstddef>
+#include <tuple>
 
 namespace trussmap {
 namespace {
@@ -107,11 +108,18 @@ void add_sensors(const Robot& robot, const ChannelGains& gains, const DriveScale
   add("steering gain", "times", 1.0 + g(steer_gain), steer_gain, "the angle");
   add("gyro scale", "times", 1.0 + g(gyro_scale), gyro_scale, "the rate, after the bias");
   add("gyro bias", "rad/s", g(gyro) / (1.0 + g(gyro_scale)), gyro, "subtract it");
-  add("antenna ahead", "m", g(antenna), antenna, "of the axle's centre");
-  add("antenna left", "m", g(antenna_left), antenna_left, "of the axle's centre");
+  constexpr const char* kOfAxle = "of the axle's centre";
+  const auto [at, receiver, scans] = std::tuple(robot.mounted.sensor.value_or(Mounting()),
+                                                robot.mounted.antenna.value_or(Mounting()),
+                                                robot.mounted.scanner.value_or(Mounting()));
+  add("antenna ahead", "m", receiver.x + g(antenna), antenna, kOfAxle);
+  add("antenna left", "m", receiver.y + g(antenna_left), antenna_left, kOfAxle);
   add("fix delay", "s", g(fix_delay), fix_delay, "subtract it from the stamps");
-  add("sensor ahead", "m", g(lever), lever, "of where the recordings have it");
-  add("sensor left", "m", g(lever_left), lever_left, "of where the recordings have it");
+  add("sensor ahead", "m", at.x + g(lever), lever, kOfAxle);
+  add("sensor left", "m", at.y + g(lever_left), lever_left, kOfAxle);
+  add("scanner ahead", "m", scans.x + g(scanner), scanner, kOfAxle);
+  add("scanner left", "m", scans.y + g(scanner_left), scanner_left, kOfAxle);
+  add("scanner yaw", "rad", scans.yaw + g(scanner_yaw), scanner_yaw, "to the left of ahead");
   add("sighting delay", "s", g(delay), delay, "subtract it from the stamps");
   add("range offset", "m", g(range), range, "subtract it");
   add("range scale", "times", 1.0 / (1.0 + g(range_scale)), range_scale,

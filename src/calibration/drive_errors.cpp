@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/reckoning.hpp"
 #include "calibration/reference_alignment.hpp"
+#include "calibration/sensor_places.hpp"
 #include "odometry/effect_correction.hpp"
 #include "trussmap/calibrate.hpp"
 #include "trussmap/error.hpp"
@@ -40,8 +41,11 @@ double mean_travel(const MotionRows& drive, std::size_t row) {
 
 }  // namespace
 
-std::vector<DriveError> drive_errors(const std::vector<DrivenRecording>& recordings,
-                                     const Model& model) {
+namespace {
+
+/// Of the axle's centre, of which the truth is here.
+std::vector<DriveError> errors_of_axle(const std::vector<DrivenRecording>& recordings,
+                                       const Model& model) {
   std::vector<DriveError> result;
   const std::vector<DrivenRecording> corrected = without_effects(recordings, model);
   for (std::size_t k = 0; k < recordings.size(); ++k) {
@@ -69,11 +73,19 @@ std::vector<DriveError> drive_errors(const std::vector<DrivenRecording>& recordi
   return result;
 }
 
+}  // namespace
+
+std::vector<DriveError> drive_errors(const std::vector<DrivenRecording>& recordings,
+                                     const Model& model) {
+  const Mounting stated = with_places_in_robot(model).robot.mounted.tracked.value_or(Mounting());
+  return drive_errors(recordings, model, TruthAlignment{stated.x, stated.y, stated.yaw, {}});
+}
+
 std::vector<DriveError> drive_errors(const std::vector<DrivenRecording>& recordings,
                                      const Model& model, const TruthAlignment& truth) {
   TruthAlignment mounting = truth;
   mounting.clocks.clear();
-  return drive_errors(aligned(recordings, mounting, model.robot), model);
+  return errors_of_axle(aligned(recordings, mounting, model.robot), with_places_in_robot(model));
 }
 
 }  // namespace trussmap

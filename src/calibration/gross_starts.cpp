@@ -47,23 +47,34 @@ struct TimedMark {
   Mark mark;
 };
 
-std::vector<TimedMark> marks_of(const DrivenRecording& recording) {
+/// On the robot, m.
+Vector2 place_of(const std::optional<Mounting>& at) {
+  return at ? Vector2(at->x, at->y) : Vector2::Zero().eval();
+}
+
+std::vector<TimedMark> marks_of(const DrivenRecording& recording, const Mountings& mounted) {
+  const Vector2 sensor = place_of(mounted.sensor);
+  const double yaw = mounted.sensor.value_or(Mounting()).yaw;
   std::map<std::string, Vector2> survey;
   for (const SurveyPoint& one : recording.survey) survey[one.landmark] = {one.x, one.y};
   std::vector<TimedMark> marks;
   for (const Sighting& one : recording.sightings) {
     if (!one.locates()) continue;
     Mark mark;
-    mark.offset = landmark_offset(one, {}).offset_robot;
+    mark.offset = sensor + rotation(yaw) * landmark_offset(one, {}).offset_robot;
     mark.landmark = one.landmark;
     if (const auto known = survey.find(one.landmark); known != survey.end()) {
       mark.known = known->second;
     }
     marks.push_back({one.t, mark});
   }
-  for (const Fix& one : recording.fixes) marks.push_back({one.t, {.known = Vector2(one.x, one.y)}});
+  const Vector2 antenna = place_of(mounted.antenna);
+  for (const Fix& one : recording.fixes) {
+    marks.push_back({one.t, {.offset = antenna, .known = Vector2(one.x, one.y)}});
+  }
+  const Vector2 tracked = place_of(mounted.tracked);
   for (const TruthRow& one : recording.truth) {
-    marks.push_back({one.t, {.known = Vector2(one.x, one.y)}});
+    marks.push_back({one.t, {.offset = tracked, .known = Vector2(one.x, one.y)}});
   }
   std::stable_sort(marks.begin(), marks.end(),
                    [](const TimedMark& a, const TimedMark& b) { return a.t < b.t; });
@@ -143,7 +154,7 @@ Course course_of(const DrivenRecording& recording, const Robot& robot) {
   Course course;
   const MotionRows& drive = recording.drive;
   double from = drive.start();
-  for (TimedMark& one : thinned(marks_of(recording))) {
+  for (TimedMark& one : thinned(marks_of(recording, robot.mounted))) {
     if (one.t < drive.start() || one.t > drive.t.back()) continue;
     add_steps(drive, from, one.t, robot, course.steps);
     if (course.steps.size() > kMostSteps) break;

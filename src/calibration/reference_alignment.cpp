@@ -4,16 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace trussmap {
 namespace {
 
 // Far beyond what a marker put on by hand or two logs cut by hand are off by.
-constexpr double kLeverSd = 0.3;    // m
-constexpr double kHeadingSd = 0.1;  // rad
-constexpr double kLateSd = 0.3;     // s
-constexpr double kClockSd = 0.001;  // s/s
-constexpr double kAntennaSd = 3.0;  // m: a receiver's, which may sit on a long vehicle
+constexpr double kPlaceSd = 3.0;       // m: a long vehicle's
+constexpr double kHeadingSd = 0.1;     // rad
+constexpr double kYawSd = 0.5;         // rad, of a sensor
+constexpr double kLateSd = 0.3;        // s
+constexpr double kClockSd = 0.001;     // s/s
+constexpr double kUselessPlace = 0.1;  // m, a standard error
+constexpr double kUselessYaw = 0.1;    // rad
 
 /// Where the robot was `late` seconds before time t, seen from where it is at t; at rest outside
 /// of the drive.
@@ -140,8 +144,8 @@ EffectParameters of_truth(const std::vector<DrivenRecording>& recordings, const 
     parameters.push_back(
         everywhere(name, unit, sd, recordings, &Observations::truth, &EffectPattern::truths));
   };
-  add("truth's point, ahead", kAhead, kLeverSd);
-  add("truth's point, left", kLeft, kLeverSd);
+  add("truth's point, ahead", kAhead, kPlaceSd);
+  add("truth's point, left", kLeft, kPlaceSd);
   add("truth's heading", kTurned, kHeadingSd);
   for (const auto& [session, start] : clocks) {
     const int number = session;
@@ -163,8 +167,8 @@ EffectParameters of_fixes(const std::vector<DrivenRecording>& recordings, const 
   if (clocks.empty()) return parameters;
   for (const auto& [name, unit] :
        {std::pair{"antenna, ahead", kAhead}, std::pair{"antenna, left", kLeft}}) {
-    parameters.push_back(everywhere(name, unit, kAntennaSd, recordings, &Observations::fixes,
-                                    &EffectPattern::fixes));
+    parameters.push_back(
+        everywhere(name, unit, kPlaceSd, recordings, &Observations::fixes, &EffectPattern::fixes));
   }
   for (const auto& [session, start] : clocks) {
     const auto known = prior.late.find(session);
@@ -178,45 +182,130 @@ EffectParameters of_fixes(const std::vector<DrivenRecording>& recordings, const 
   return parameters;
 }
 
-}  // namespace
-
-EffectParameters reference_alignment(const std::vector<DrivenRecording>& recordings,
-                                     const Robot& robot, const ProblemOptions& used,
-                                     const std::vector<int>& sessions,
-                                     const ReferenceAlignment& prior) {
+template <typename Row>
+EffectParameters of_mounting(const std::vector<DrivenRecording>& recordings,
+                             std::vector<Row> Observations::*rows, Patterns patterns) {
   EffectParameters parameters;
-  if (used.truth) parameters = of_truth(recordings, robot, sessions, prior.truth);
-  if (!used.fixes) return parameters;
-  for (EffectPattern& one : of_fixes(recordings, robot, sessions, prior.fixes)) {
-    parameters.push_back(std::move(one));
+  for (const auto& [name, unit, sd] :
+       {std::tuple{"sensor, ahead", kAhead, kPlaceSd}, std::tuple{"sensor, left", kLeft, kPlaceSd},
+        std::tuple{"sensor, yaw", kTurned, kYawSd}}) {
+    parameters.push_back(everywhere(name, unit, sd, recordings, rows, patterns));
   }
   return parameters;
 }
 
-ReferenceAlignment alignment_of(const std::vector<DrivenRecording>& recordings,
-                                const ProblemOptions& used, const std::vector<int>& sessions,
-                                const Eigen::VectorXd& coefficients) {
+/// Reads coefficients one after the other.
+class CoefficientReader {
+ public:
+  CoefficientReader(const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance)
+      : values_(values), covariance_(covariance) {}
+
+  double value() { return values_[at_++]; }
+
+  /// Beside what was stated; kept with its error where that is below `useless`.
+  double beside(double stated, double useless, std::optional<Calibrated>& kept) {
+    const double sd = std::sqrt(covariance_(at_, at_));
+    const double found = stated + value();
+    if (sd < useless) kept = Calibrated{found, sd};
+    return found;
+  }
+
+  CalibratedMounting mounting(const char* of, const std::optional<Mounting>& stated, bool turns) {
+    const Mounting from = stated.value_or(Mounting());
+    CalibratedMounting result{.of = of};
+    place.x = beside(from.x, kUselessPlace, result.x);
+    place.y = beside(from.y, kUselessPlace, result.y);
+    if (turns) place.yaw = beside(from.yaw, kUselessYaw, result.yaw);
+    return result;
+  }
+
+  Mounting place;  ///< of the mounting read last, sure or not
+
+ private:
+  const Eigen::VectorXd& values_;
+  const Eigen::MatrixXd& covariance_;
+  Eigen::Index at_ = 0;
+};
+
+}  // namespace
+
+ReferencesUsed references_in(const std::vector<DrivenRecording>& recordings,
+                             const ProblemOptions& used) {
+  const auto any = [&](const auto& has) {
+    return std::any_of(recordings.begin(), recordings.end(), has);
+  };
+  const auto sees = [](const DrivenRecording& one) {
+    return std::any_of(one.sightings.begin(), one.sightings.end(),
+                       [](const Sighting& sighting) { return !sighting.standing(); });
+  };
+  return {used.truth && any([](const DrivenRecording& one) { return !one.truth.empty(); }),
+          used.fixes && any([](const DrivenRecording& one) { return !one.fixes.empty(); }),
+          any(sees),
+          used.loops && any([](const DrivenRecording& one) { return !one.loops.empty(); })};
+}
+
+EffectParameters reference_alignment(const std::vector<DrivenRecording>& recordings,
+                                     const Robot& robot, const ReferencesUsed& used,
+                                     const std::vector<int>& sessions,
+                                     const ReferenceAlignment& prior) {
+  EffectParameters parameters;
+  const auto add = [&parameters](EffectParameters more) {
+    for (EffectPattern& one : more) parameters.push_back(std::move(one));
+  };
+  if (used.truth) add(of_truth(recordings, robot, sessions, prior.truth));
+  if (used.fixes) add(of_fixes(recordings, robot, sessions, prior.fixes));
+  if (used.sensor) {
+    add(of_mounting(recordings, &Observations::sightings, &EffectPattern::sightings));
+  }
+  if (used.scanner) add(of_mounting(recordings, &Observations::loops, &EffectPattern::loops));
+  return parameters;
+}
+
+ReferenceAlignment alignment_of(const std::vector<DrivenRecording>& recordings, const Robot& robot,
+                                const ReferencesUsed& used, const std::vector<int>& sessions,
+                                const Eigen::VectorXd& coefficients,
+                                const Eigen::MatrixXd& covariance) {
+  const Mountings& stated = robot.mounted;
   ReferenceAlignment result;
-  Eigen::Index at = 0;
-  TruthAlignment& truth = result.truth;
-  if (used.truth) truth.clocks = clocks_of(recordings, &Observations::truth, sessions);
-  if (!truth.clocks.empty()) {
-    truth.ahead = coefficients[at++];
-    truth.left = coefficients[at++];
-    truth.heading = coefficients[at++];
+  CoefficientReader reader(coefficients, covariance);
+  if (used.truth) {
+    TruthAlignment& truth = result.truth;
+    truth.clocks = clocks_of(recordings, &Observations::truth, sessions);
+    result.mountings.push_back(reader.mounting("tracked", stated.tracked, true));
+    truth.ahead = reader.place.x;
+    truth.left = reader.place.y;
+    truth.heading = reader.place.yaw;
+    for (auto& [session, clock] : truth.clocks) {
+      clock.late = reader.value();
+      clock.drift = reader.value();
+    }
   }
-  for (auto& [session, clock] : truth.clocks) {
-    clock.late = coefficients[at++];
-    clock.drift = coefficients[at++];
+  if (used.fixes) {
+    result.mountings.push_back(reader.mounting("antenna", stated.antenna, false));
+    result.fixes.ahead = reader.place.x;
+    result.fixes.left = reader.place.y;
+    for (const auto& [session, clock] : clocks_of(recordings, &Observations::fixes, sessions)) {
+      result.fixes.late[session] = reader.value();
+    }
   }
-  if (!used.fixes) return result;
-  const auto sessions_with = clocks_of(recordings, &Observations::fixes, sessions);
-  if (sessions_with.empty()) return result;
-  result.fixes.ahead = coefficients[at++];
-  result.fixes.left = coefficients[at++];
-  for (const auto& [session, clock] : sessions_with)
-    result.fixes.late[session] = coefficients[at++];
+  if (used.sensor) result.mountings.push_back(reader.mounting("sensor", stated.sensor, true));
+  if (used.scanner) result.mountings.push_back(reader.mounting("scanner", stated.scanner, true));
   return result;
+}
+
+Mountings with_found(Mountings mounted, const ReferenceAlignment& found) {
+  for (const CalibratedMounting& one : found.mountings) {
+    std::optional<Mounting>& at = one.of == "tracked"   ? mounted.tracked
+                                  : one.of == "antenna" ? mounted.antenna
+                                  : one.of == "sensor"  ? mounted.sensor
+                                                        : mounted.scanner;
+    if (!one.x && !one.y && !one.yaw) continue;
+    if (!at) at.emplace();
+    if (one.x) at->x = one.x->value;
+    if (one.y) at->y = one.y->value;
+    if (one.yaw) at->yaw = one.yaw->value;
+  }
+  return mounted;
 }
 
 std::vector<DrivenRecording> aligned(const std::vector<DrivenRecording>& recordings,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/constant_values.hpp"
 #include "calibration/one_wheel.hpp"
+#include "calibration/sensor_places.hpp"
 #include "calibration/sought_constants.hpp"
 #include "calibration/stack_values.hpp"
 #include "estimation/effect_parameters.hpp"
@@ -257,19 +258,35 @@ KnownGains known_of(const Model& before, const WheelCalibration& found) {
   return known;
 }
 
+/// Places of sensors, those of the model before with its effects.
+void add_places(const std::vector<CalibratedMounting>& found, const Model& before,
+                std::vector<RobotConstant>& list) {
+  const Mountings stated = with_places_in_robot(before).robot.mounted;
+  for (const CalibratedMounting& one : found) {
+    const Mounting was = (one.of == "antenna"   ? stated.antenna
+                          : one.of == "sensor"  ? stated.sensor
+                          : one.of == "tracked" ? stated.tracked
+                                                : stated.scanner)
+                             .value_or(Mounting());
+    const auto add = [&](const char* name, const char* unit, double old,
+                         const std::optional<Calibrated>& value, const char* note) {
+      if (!value) return;
+      list.push_back({.name = (one.of == "tracked" ? "truth" : one.of) + " " + name,
+                      .unit = unit,
+                      .before = old,
+                      .after = value->value,
+                      .sd = value->sd,
+                      .note = note});
+    };
+    add("ahead", "m", was.x, one.x, "of the axle's centre");
+    add("left", "m", was.y, one.y, "of the axle's centre");
+    add("yaw", "rad", was.yaw, one.yaw, "to the left of ahead");
+  }
+}
+
 void add_fixes(const FixAlignment& fixes, const Model& before, std::vector<RobotConstant>& list) {
   if (fixes.late.empty()) return;
   const ChannelGains in_force = gains_of(before);
-  list.push_back({.name = "antenna ahead",
-                  .unit = "m",
-                  .before = gain_of(in_force, Channel::antenna),
-                  .after = fixes.ahead,
-                  .note = "of the axle's centre"});
-  list.push_back({.name = "antenna left",
-                  .unit = "m",
-                  .before = gain_of(in_force, Channel::antenna_left),
-                  .after = fixes.left,
-                  .note = "of the axle's centre"});
   double sum = 0.0;
   for (const auto& [session, late] : fixes.late) sum += late;
   list.push_back({.name = "fix delay",
@@ -337,6 +354,7 @@ RobotConstants robot_constants(const Model& before, const std::vector<EffectEsti
 RobotConstants robot_constants(const Model& before, const WheelCalibration& found) {
   const KnownGains known = known_of(before, found);
   RobotConstants result = told(before, known);
+  add_places(found.mountings, before, result.list);
   add_fixes(found.fixes, before, result.list);
   for (const auto& [name, noise, old] :
        {std::tuple("left wheel noise", &found.noise_left, before.noise.left),

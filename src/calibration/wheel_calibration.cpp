@@ -7,6 +7,7 @@
 #include "calibration/measured_distance.hpp"
 #include "calibration/most_likely_noise.hpp"
 #include "calibration/reference_alignment.hpp"
+#include "calibration/sensor_places.hpp"
 #include "calibration/sought_constants.hpp"
 #include "drive/well_formed.hpp"
 #include "estimation/recording_adjustment.hpp"
@@ -27,17 +28,23 @@
 namespace trussmap {
 namespace {
 
-/// Parameters: those of the constants that are wanted, and the alignment of truth and fixes.
+/// What is told of references: which of them are asked where they sit, what is known of them.
+struct References {
+  ReferencesUsed used;
+  ReferenceAlignment found;
+};
+
+/// Parameters: those of the constants that are wanted, and the alignment of the references.
 EffectParameters parameters_of(const Wanted& wanted, const std::vector<DrivenRecording>& recordings,
                                const Robot& robot, const WheelCalibrationOptions& options,
-                               const ReferenceAlignment& prior) {
+                               const References& references) {
   const std::vector<SoughtConstant> constants = sought_constants(robot);
   EffectParameters parameters;
   for (std::size_t k = 0; k < constants.size(); ++k) {
     if (wanted[k]) parameters.push_back(plain_effect(constants[k].channel, recordings, robot));
   }
-  for (EffectPattern& one :
-       reference_alignment(recordings, robot, options.problem, options.sessions, prior)) {
+  for (EffectPattern& one : reference_alignment(recordings, robot, references.used,
+                                                options.sessions, references.found)) {
     parameters.push_back(std::move(one));
   }
   return parameters;
@@ -52,11 +59,11 @@ struct Fitted {
 };
 
 Fitted fit(const std::vector<DrivenRecording>& recordings, const Model& model, const Wanted& wanted,
-           const WheelCalibrationOptions& options, const ReferenceAlignment& prior) {
+           const WheelCalibrationOptions& options, const References& references) {
   Fitted result;
   result.corrected = without_effects(recordings, model);
   result.problem = make_problem(result.corrected, model, options.problem);
-  result.parameters = parameters_of(wanted, result.corrected, model.robot, options, prior);
+  result.parameters = parameters_of(wanted, result.corrected, model.robot, options, references);
   result.adjustment = adjust(result.problem, result.parameters);
   return result;
 }
@@ -89,7 +96,9 @@ std::string undetermined_text(const SoughtConstant& one, bool scale) {
 
 /// Which of them the motion determines: each alone, then jointly.
 Wanted determined(const std::vector<DrivenRecording>& recordings, const Model& model,
-                  const WheelCalibrationOptions& options, std::vector<std::string>& undetermined) {
+                  const WheelCalibrationOptions& options, const ReferencesUsed& used,
+                  std::vector<std::string>& undetermined) {
+  const References references{used, {}};
   // Without a measured distance the least chi^2 lies at a smaller map: its errors shrink with it.
   const bool scale = measures_distance(recordings, options.problem, model.noise);
   const std::vector<SoughtConstant> constants = sought_constants(model.robot);
@@ -97,7 +106,7 @@ Wanted determined(const std::vector<DrivenRecording>& recordings, const Model& m
   for (const SoughtConstant& one : constants) wanted.push_back(scale || !shows_scale(one.channel));
   const auto can = [&](const Wanted& these) {
     try {
-      const Fitted one = fit(recordings, model, these, options, {});
+      const Fitted one = fit(recordings, model, these, options, references);
       const Eigen::VectorXd variances = one.adjustment.coefficient_covariance.diagonal();
       Eigen::Index at = 0;
       for (std::size_t k = 0; k < these.size(); ++k) {
@@ -116,7 +125,7 @@ Wanted determined(const std::vector<DrivenRecording>& recordings, const Model& m
   if (can(wanted)) return wanted;
   // Nothing at all: let the reason through.
   wanted.assign(constants.size(), false);
-  static_cast<void>(fit(recordings, model, wanted, options, {}));
+  static_cast<void>(fit(recordings, model, wanted, options, references));
   for (std::size_t k = 0; k < constants.size(); ++k) {
     if (shows_scale(constants[k].channel) && !scale) continue;
     Wanted more = wanted;
@@ -222,6 +231,45 @@ WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings
 
 namespace {
 
+/// What the last fit says of the references.
+ReferenceAlignment alignment_by(const Fitted& last, Eigen::Index geometry,
+                                const std::vector<DrivenRecording>& recordings, const Robot& robot,
+                                const ReferencesUsed& used,
+                                const WheelCalibrationOptions& options) {
+  const Eigen::Index more = last.adjustment.coefficients.size() - geometry;
+  return alignment_of(recordings, robot, used, options.sessions,
+                      last.adjustment.coefficients.tail(more),
+                      last.adjustment.coefficient_covariance.bottomRightCorner(more, more));
+}
+
+/// The references in use, of a sensor and a scanner those alone that a fit of all constants and
+/// places tells the place of: held where they are stated they tell more of the wheels.
+ReferencesUsed told_in(const std::vector<DrivenRecording>& recordings, const Model& model,
+                       const WheelCalibrationOptions& options) {
+  ReferencesUsed used = references_in(recordings, options.problem);
+  if (!used.sensor && !used.scanner) return used;
+  const bool scale = measures_distance(recordings, options.problem, model.noise);
+  Wanted wanted;
+  for (const SoughtConstant& one : sought_constants(model.robot)) {
+    wanted.push_back(scale || !shows_scale(one.channel));
+  }
+  const ReferencesUsed all = used;
+  used.sensor = used.scanner = false;
+  try {
+    const Fitted one = fit(recordings, model, wanted, options, {all, {}});
+    const auto geometry = static_cast<Eigen::Index>(std::count(wanted.begin(), wanted.end(), true));
+    for (const CalibratedMounting& found :
+         alignment_by(one, geometry, recordings, model.robot, all, options).mountings) {
+      const bool told = found.x && found.y;
+      if (found.of == "sensor") used.sensor = told;
+      if (found.of == "scanner") used.scanner = told;
+    }
+  } catch (const SolveError&) {
+    return used;
+  }
+  return used;
+}
+
 /// From these values of the constants on.
 WheelCalibration calibrated_from(std::vector<double> g,
                                  const std::vector<DrivenRecording>& recordings, const Model& model,
@@ -230,19 +278,24 @@ WheelCalibration calibrated_from(std::vector<double> g,
   constexpr double kSettled = 1e-10;
   WheelCalibration result;
   result.model = with_constants(model, g);
-  const Wanted wanted = determined(recordings, result.model, options, result.undetermined);
+  Mountings& mounted = result.model.robot.mounted;
+  mounted = started_places(recordings, model.robot);
+  References references{told_in(recordings, result.model, options), {}};
+  if (!references.used.scanner) mounted.scanner = model.robot.mounted.scanner;
+  if (!references.used.sensor) mounted.sensor = model.robot.mounted.sensor;
+  const Wanted wanted =
+      determined(recordings, result.model, options, references.used, result.undetermined);
   const Eigen::Index geometry = std::count(wanted.begin(), wanted.end(), true);
   // Noise weighs the measurements, so it is found between two fits of the geometry.
   Fitted last;
-  ReferenceAlignment references;
   for (const bool noise : {options.noise, false}) {
     for (int round = 0; round < kRounds; ++round) {
       last = fit(recordings, result.model, wanted, options, references);
       g = refined(g, wanted, model.robot, last.adjustment.coefficients);
       result.model = with_constants(result.model, g);
-      const Eigen::VectorXd& all = last.adjustment.coefficients;
-      references = alignment_of(recordings, options.problem, options.sessions,
-                                all.tail(all.size() - geometry));
+      references.found =
+          alignment_by(last, geometry, recordings, result.model.robot, references.used, options);
+      mounted = with_found(mounted, references.found);
       const Eigen::VectorXd steps = last.adjustment.coefficients.head(geometry);
       if (geometry == 0 || steps.cwiseAbs().maxCoeff() < kSettled) break;
     }
@@ -250,8 +303,9 @@ WheelCalibration calibrated_from(std::vector<double> g,
     if (noise && model.robot.drive == DriveKind::differential)
       find_noise(last, options.problem, result);
   }
-  result.truth = std::move(references.truth);
-  result.fixes = std::move(references.fixes);
+  result.truth = std::move(references.found.truth);
+  result.fixes = std::move(references.found.fixes);
+  result.mountings = std::move(references.found.mountings);
   read_constants(result, g, wanted, last.adjustment);
   result.settled = stands_still(last.adjustment, geometry);
   return result;
@@ -311,7 +365,9 @@ WheelCalibration calibrated(const std::vector<DrivenRecording>& recordings, cons
                             const WheelCalibrationOptions& options) {
   const std::vector<double> stated = in_force(model);
   std::vector<std::vector<double>> starts;
-  for (const GrossStart& one : gross_starts(recordings, model.robot, options.problem)) {
+  Robot robot = model.robot;
+  robot.mounted = started_places(recordings, robot);
+  for (const GrossStart& one : gross_starts(recordings, robot, options.problem)) {
     starts.push_back(at_start(stated, one, model.robot));
   }
   std::optional<Led> led;
@@ -326,7 +382,8 @@ WheelCalibration calibrated(const std::vector<DrivenRecording>& recordings, cons
 }  // namespace
 
 WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
-                                  const Model& model, const WheelCalibrationOptions& options) {
+                                  const Model& given, const WheelCalibrationOptions& options) {
+  const Model model = with_places_in_robot(given);
   const std::vector<double> g = in_force(model);
   const std::optional<std::size_t> gain = place_of_gain(model.robot);
   if (!gain) return calibrated(recordings, model, options);

@@ -52,6 +52,7 @@ struct Measured {
   std::set<std::string_view> noises;  ///< noises_in
   bool fixes = false;
   bool points = false;  ///< sightings or truth
+  bool loops = false;
 
   [[nodiscard]] bool has(std::string_view noise) const { return noises.contains(noise); }
 };
@@ -61,7 +62,8 @@ Measured measured_in(const RecordingProblem& problem) {
     return std::any_of(problem.measurements.begin(), problem.measurements.end(), is);
   };
   return {noises_in(problem), any(is_position),
-          any([](const Measurement& one) { return is_sighting(one) || gives_pose(one); })};
+          any([](const Measurement& one) { return is_sighting(one) || gives_pose(one); }),
+          any(is_tie)};
 }
 
 bool is_possible(Channel channel, const Measured& measured, const Robot& robot) {
@@ -70,6 +72,7 @@ bool is_possible(Channel channel, const Measured& measured, const Robot& robot) 
   if (channel == Channel::gyro || channel == Channel::gyro_scale) return measured.has("gyro");
   if (channel == Channel::truth_heading) return measured.has("truth");
   if (acts_on_fixes(channel)) return measured.fixes;
+  if (acts_on_loops(channel)) return measured.loops;
   if (channel == Channel::sighting_yaw) return measured.has("yaw");
   if (acts_on(channel) == ActsOn::views && !measured.points) return false;
   if (channel == Channel::bearing) return measured.has("range") || measured.has("bearing");
@@ -404,7 +407,8 @@ std::vector<Candidate> candidates_for(const FitState& fit, const ShapeContext& c
   for (const Channel channel :
        {Channel::lever, Channel::lever_left, Channel::range, Channel::range_scale, Channel::bearing,
         Channel::delay, Channel::truth_heading, Channel::antenna, Channel::antenna_left,
-        Channel::fix_delay, Channel::sighting_yaw}) {
+        Channel::fix_delay, Channel::sighting_yaw, Channel::scanner, Channel::scanner_left,
+        Channel::scanner_yaw}) {
     if (grounds.allow(channel)) append(all, of_view_channel(channel, grounds));
   }
   return each_once(std::move(all));

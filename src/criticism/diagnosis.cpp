@@ -319,17 +319,6 @@ void tell_of_left_out(Diagnosis& diagnosis, std::size_t still) {
   }
 }
 
-/// Noise that would have to be larger than any explains nothing away.
-void object_to_noise(const FittedNoise& noise, Diagnosis& diagnosis) {
-  if (diagnosis.verdict != Diagnosis::Verdict::nothing_missing) return;
-  if (std::none_of(noise.sources.begin(), noise.sources.end(),
-                   [](const NoiseSource& one) { return one.no_noise; })) {
-    return;
-  }
-  diagnosis.verdict = Diagnosis::Verdict::unexplained_misfit;
-  diagnosis.objection = Objection::noise;
-}
-
 /// About a fit that may be believed.
 DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                              const Noise& stated, const DiagnoseOptions& options,

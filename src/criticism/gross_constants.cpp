@@ -3,7 +3,7 @@
 #include "criticism/gross_constants.hpp"
 
 #include "calibration/measured_distance.hpp"
-#include "calibration/wheel_calibration.hpp"
+#include "criticism/calibrated_start.hpp"
 #include "criticism/candidates.hpp"
 #include "criticism/effect_strength.hpp"
 #include "criticism/gross_cause.hpp"
@@ -20,8 +20,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <stdexcept>
 #include <utility>
 
 namespace trussmap {
@@ -30,7 +28,6 @@ namespace {
 constexpr double kMisfit = 1e-6;       // p of chi^2, below which they are asked for
 constexpr double kFarTooLarge = 10.0;  // chi^2/dof
 constexpr double kMostLeft = 0.5;      // of chi^2/dof, beside them
-constexpr double kGross = 0.05;        // of a factor
 
 bool is_motion(Channel channel) {
   return channel == Channel::travel || channel == Channel::turn || channel == Channel::sideways;
@@ -81,20 +78,6 @@ bool is_far_off(const std::optional<ModelFit>& fit) {
   return !fit || fit->chi2 > kFarTooLarge * std::max(1, fit->dof);
 }
 
-/// Nothing where that cannot be fitted, or leaves nothing to fit.
-template <class Result>
-std::optional<Result> if_possible(const std::function<Result()>& fit) {
-  try {
-    return fit();
-  } catch (const SolveError&) {
-    return std::nullopt;
-  } catch (const InputError&) {
-    return std::nullopt;
-  } catch (const std::invalid_argument&) {  // steered to where a wheel has no way ahead
-    return std::nullopt;
-  }
-}
-
 /// From a start of its own.
 std::optional<ModelFit> fitted_afresh(const std::vector<DrivenRecording>& recordings,
                                       const ModelFit& given, const std::vector<Effect>& constants) {
@@ -103,68 +86,23 @@ std::optional<ModelFit> fitted_afresh(const std::vector<DrivenRecording>& record
   return if_possible<ModelFit>([&] { return fit_model(recordings, model, given.options); });
 }
 
-/// g of travel, of turning and of the wheels' difference, as effects that add to each other have
-/// them; a calibration's act one after the other.
-struct DriveFactors {
-  double travel = 0.0, turn = 0.0, difference = 0.0;
-};
-
-DriveFactors factors_of(const Model& calibrated) {
-  DriveFactors result;
-  double radii = 0.0;
-  int wheels = 0;
-  for (const Effect& one : calibrated.effects) {
-    const double g = one.coefficients.empty() ? 0.0 : one.coefficients.front();
-    if (one.channel == Channel::turn) result.turn += g;
-    if (one.channel == Channel::difference) result.difference += g;
-    if (one.channel == Channel::wheels) result.travel += g;
-    if (wheel_of(one.channel)) {
-      radii += g;
-      ++wheels;
-    }
-  }
-  if (wheels > 0) result.travel += radii / wheels;
-  const double turn = (1.0 + result.turn) * (1.0 + result.travel);
-  result.turn = turn - 1.0;
-  result.difference *= turn;
-  return result;
-}
-
-/// The constants as a calibration of the drive has them, where it leads anywhere, as a start;
-/// nothing where none of them is gross.
-std::optional<std::vector<Effect>> start_of_constants(
-    const std::vector<DrivenRecording>& recordings, const ModelFit& given,
-    std::vector<Effect> constants) {
-  WheelCalibrationOptions options;
-  options.problem = fitter_options(given.options).problem;
-  options.noise = false;
-  const auto found = if_possible<WheelCalibration>(
-      [&] { return calibrate_wheels(recordings, given.model, options); });
-  if (!found) return constants;
-  const DriveFactors factors = factors_of(found->model);
-  if (std::max({std::abs(factors.travel), std::abs(factors.turn), std::abs(factors.difference)}) <
-      kGross) {
-    return std::nullopt;
-  }
-  for (Effect& one : constants) {
-    one.coefficients.assign(one.shape.size(), 0.0);
-    if (one.channel == Channel::travel) one.coefficients = {factors.travel};
-    if (one.channel == Channel::turn) one.coefficients = {factors.turn};
-    if (one.channel == Channel::difference) one.coefficients = {factors.difference};
-  }
-  return constants;
-}
-
 /// All of them at once.
 std::optional<ModelFit> with_all(const std::vector<DrivenRecording>& recordings,
                                  const ModelFit& given, const std::vector<Effect>& constants) {
-  std::optional<ModelFit> best =
-      if_possible<ModelFit>([&] { return refit_with(recordings, given, constants); });
-  if (!is_far_off(best)) return best;
-  if (const auto from = start_of_constants(recordings, given, constants)) {
-    best = better_of(best, fitted_afresh(recordings, given, *from));
+  std::optional<CalibratedStart> start;
+  std::optional<ModelFit> best;
+  if (is_far_off(given)) {
+    start = start_of_constants(recordings, given, constants);
+    // About a fit that has a sensor metres off no other fit can begin.
+    if (start->far_places) best = fitted_afresh(recordings, given, start->constants);
+    if (!is_far_off(best)) return best;
   }
-  return best;
+  best = better_of(std::move(best),
+                   if_possible<ModelFit>([&] { return refit_with(recordings, given, constants); }));
+  if (!is_far_off(best)) return best;
+  if (!start) start = start_of_constants(recordings, given, constants);
+  if (start->found && !start->gross) return best;
+  return better_of(best, fitted_afresh(recordings, given, start->constants));
 }
 
 /// The same fit with other effects from `first` on, their coefficients as found.
@@ -212,7 +150,8 @@ std::optional<ModelFit> strong_ones(const std::vector<DrivenRecording>& recordin
 }
 
 bool is_gross(const Effect& one) {
-  return is_factor(one.channel) && std::abs(one.coefficients.front()) >= kGross;
+  const double g = one.coefficients.front();
+  return (is_factor(one.channel) && std::abs(g) >= kGross) || is_far_place(one.channel, g);
 }
 
 /// Without those that a fit without them does hardly worse than: a standard error is of the plane

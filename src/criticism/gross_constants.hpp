@@ -8,14 +8,15 @@
 //
 //   from the fit as given
 //   where that leaves far too much, from where a calibration finds the drive's own constants
+//   first of all from there, where it finds a sensor 0.3 m and more from where it is stated to sit
 //
 // Those that the data do not surely show, by the scatter that is left, go again. They are kept
-// where they explain most of the misfit and one of the drive's factors is off by 5 % and more, or
-// where a handful of measurements can tell of nothing else; smaller ones are left to the tests of
-// all effects. Where much is left all the same the gate is lifted while they are sought. One wheel
-// of another size, or all of them, stands for a ratio, a scale and a turning where it explains as
-// much. Where constants leave much one error of another kind may explain it (gross_cause.hpp).
-// Without a measured distance no scale is asked for.
+// where they explain most of the misfit and one of the drive's factors is off by 5 % and more, or a
+// sensor by 0.3 m (0.2 rad), or where a handful of measurements can tell of nothing else; smaller
+// ones are left to the tests of all effects. Where much is left all the same the gate is lifted
+// while they are sought. One wheel of another size, or all of them, stands for a ratio, a scale and
+// a turning where it explains as much. Where constants leave much one error of another kind may
+// explain it (gross_cause.hpp). Without a measured distance no scale is asked for.
 #pragma once
 
 #include "trussmap/diagnose.hpp"

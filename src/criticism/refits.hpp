@@ -4,9 +4,12 @@
 // A fit, done again with something else believed. All throw as refit does.
 #pragma once
 
+#include "trussmap/error.hpp"
 #include "trussmap/fit_model.hpp"
 
+#include <functional>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 namespace trussmap {
@@ -23,5 +26,19 @@ namespace trussmap {
 /// With this noise.
 [[nodiscard]] ModelFit refit_under(const std::vector<DrivenRecording>& recordings,
                                    const ModelFit& fit, const Noise& noise);
+
+/// What a fit gives; nothing where that cannot be fitted, or leaves nothing to fit.
+template <class Result>
+[[nodiscard]] std::optional<Result> if_possible(const std::function<Result()>& fit) {
+  try {
+    return fit();
+  } catch (const SolveError&) {
+    return std::nullopt;
+  } catch (const InputError&) {
+    return std::nullopt;
+  } catch (const std::invalid_argument&) {  // steered to where a wheel has no way ahead
+    return std::nullopt;
+  }
+}
 
 }  // namespace trussmap

@@ -3,7 +3,6 @@
 #include "criticism/verdict.hpp"
 
 #include "statistics/multiple_tests.hpp"
-#include "trussmap/diagnose.hpp"
 
 #include <algorithm>
 
@@ -21,6 +20,16 @@ bool is_slight_misfit(const Diagnosis& diagnosis) {
   constexpr double kSlight = 0.001;  // p
   return diagnosis.verdict == Diagnosis::Verdict::unexplained_misfit &&
          diagnosis.objection == Objection::chi2 && diagnosis.p_value > kSlight;
+}
+
+void object_to_noise(const FittedNoise& noise, Diagnosis& diagnosis) {
+  if (diagnosis.verdict != Diagnosis::Verdict::nothing_missing) return;
+  if (std::none_of(noise.sources.begin(), noise.sources.end(),
+                   [](const NoiseSource& one) { return one.no_noise; })) {
+    return;
+  }
+  diagnosis.verdict = Diagnosis::Verdict::unexplained_misfit;
+  diagnosis.objection = Objection::noise;
 }
 
 std::vector<const Finding*> found_by(const Diagnosis& diagnosis) {

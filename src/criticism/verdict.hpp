@@ -5,6 +5,7 @@
 #pragma once
 
 #include "trussmap/compare.hpp"
+#include "trussmap/diagnose.hpp"
 
 #include <vector>
 
@@ -13,5 +14,9 @@ namespace trussmap {
 /// Whether chi^2 as a whole, or else a trend, is significant at this level: Bonferroni's rule for
 /// the two. Objection::effect is another question (effect_search.hpp).
 [[nodiscard]] Objection misfit_of(double p_value, const std::vector<Trend>& trends, double level);
+
+/// Noise that would have to be larger than any explains nothing: where nothing is missing beside it
+/// the verdict becomes an unexplained misfit.
+void object_to_noise(const FittedNoise& noise, Diagnosis& diagnosis);
 
 }  // namespace trussmap

@@ -26,6 +26,10 @@ bool acts_on_fixes(Channel channel) {
   return record_of(channel).target.fixes;
 }
 
+bool acts_on_loops(Channel channel) {
+  return record_of(channel).target.loops;
+}
+
 bool is_delay(Channel channel) {
   return record_of(channel).delay;
 }

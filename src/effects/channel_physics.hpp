@@ -31,6 +31,9 @@
 //   antenna, antenna_left   f ahead, to the left            its instant
 //   fix_delay           -speed f ahead, -turn rate f          its instant
 //   fix_x, fix_y        f along the map's axes                its instant
+//   ... per loop
+//   scanner, scanner_left   f ahead, to the left            the instant it is seen from
+//   scanner_yaw         f further left                        the same
 //
 // Path and turn are those of a row's wheels (drive/body_motion.hpp). The simulator finds readings
 // by turning the physics round; it shares no formula with this file.
@@ -74,7 +77,7 @@ struct DrivePattern {
 using ViewVector = Eigen::Matrix<double, 9, 1>;  ///< a ViewPattern's numbers, in its order
 using ByView = Eigen::Matrix<double, 4, 9>;      ///< a measurement's rows by them
 
-/// What is added to a view of a landmark, to a truth row or to a fix.
+/// What is added to a view of a landmark, to a truth row, to a fix or to both ends of a loop.
 struct ViewPattern {
   double ahead = 0.0;        ///< m
   double left = 0.0;         ///< m
@@ -110,17 +113,18 @@ struct ViewPattern {
 /// The same for a view, truth row or fix at this speed (m/s) and turn rate (rad/s).
 [[nodiscard]] ViewPattern view_pattern(Channel channel, double g, double speed, double turn_rate);
 
-/// Of what acts on views: on sightings (all but truth_heading and what acts on fixes), on truth
-/// rows (all but sighting_yaw and what acts on fixes), on fixes.
+/// Of what acts on views: on sightings (all but truth_heading and what acts on fixes or loops), on
+/// truth rows (all but sighting_yaw and what acts on fixes or loops), on fixes, on loops.
 [[nodiscard]] bool acts_on_sightings(Channel channel);
 [[nodiscard]] bool acts_on_truth(Channel channel);
 [[nodiscard]] bool acts_on_fixes(Channel channel);
+[[nodiscard]] bool acts_on_loops(Channel channel);
 
 /// delay or fix_delay: the instants of what it acts on are moved.
 [[nodiscard]] bool is_delay(Channel channel);
 
 /// Whether a recording without the effect can be written down: not so for creep, lever, lever_left,
-/// delay, truth_heading and what acts on fixes.
+/// delay, truth_heading and what acts on fixes or loops.
 [[nodiscard]] bool is_recordable(Channel channel);
 
 /// A yaw rate [rad/s] freed from g of the channel gyro or gyro_scale.

@@ -16,9 +16,10 @@ namespace trussmap {
 
 struct ChannelTarget {
   ActsOn kind = ActsOn::drives;
-  bool sightings = false;  ///< these three of views alone
+  bool sightings = false;  ///< these four of views alone
   bool truth = false;
   bool fixes = false;
+  bool loops = false;
 };
 
 /// Sentences on a channel's error.

@@ -21,6 +21,7 @@ constexpr ChannelTarget kSightings{.kind = ActsOn::views, .sightings = true};
 constexpr ChannelTarget kTruth{.kind = ActsOn::views, .truth = true};
 constexpr ChannelTarget kSightingsAndTruth{.kind = ActsOn::views, .sightings = true, .truth = true};
 constexpr ChannelTarget kFixes{.kind = ActsOn::views, .fixes = true};
+constexpr ChannelTarget kLoops{.kind = ActsOn::views, .loops = true};
 
 bool has_two_wheels(const Robot& robot) {
   return robot.drive == DriveKind::differential;
@@ -292,7 +293,29 @@ std::vector<ChannelRecord> single_records() {
        .reading = true,
        .phrase = {"yaws of landmarks read", "too much", "too little"},
        .noun = "error of the landmarks' yaw",
-       .axis = "yaws of landmarks too large by"}};
+       .axis = "yaws of landmarks too large by"},
+      {.facts = {scanner, "scanner", "m", 0.3, "scanner's place ahead of the axle"},
+       .target = kLoops,
+       .recordable = false,
+       .view_pattern = [](double g, double, double) { return ViewPattern{.ahead = g}; },
+       .phrase = {"the scanner sits", "ahead of the axle", "behind the axle"},
+       .noun = "scanner's place ahead",
+       .axis = "scanner ahead by"},
+      {.facts = {scanner_left, "scanner_left", "m", 0.3, "scanner's place to the axle's left"},
+       .target = kLoops,
+       .recordable = false,
+       .view_pattern = [](double g, double, double) { return ViewPattern{.left = g}; },
+       .phrase = {"the scanner sits", "to the left of the axle's centre",
+                  "to the right of the axle's centre"},
+       .noun = "scanner's place to the left",
+       .axis = "scanner to the left by"},
+      {.facts = {scanner_yaw, "scanner_yaw", "rad", 0.5, "where the scanner looks"},
+       .target = kLoops,
+       .recordable = false,
+       .view_pattern = [](double g, double, double) { return ViewPattern{.heading = g}; },
+       .phrase = {"the scanner looks", "to the left of ahead", "to the right of ahead"},
+       .noun = "scanner's yaw",
+       .axis = "scanner turned left by"}};
 }
 
 /// Whether the n-th of a drive's own wheels rolls; one that is steered has the channel wheels.

@@ -10,6 +10,7 @@
 #include "geometry/index.hpp"
 #include "text/number_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -31,7 +32,10 @@ void free_sightings(Channel channel, const std::vector<double>& g, DrivenRecordi
 void apply(Channel channel, const std::vector<double>& g, const Robot& robot,
            DrivenRecording& recording) {
   // A tracker's affair, or a receiver's.
-  if (channel == Channel::truth_heading || acts_on_fixes(channel)) return;
+  if (channel == Channel::truth_heading || acts_on_fixes(channel) || acts_on_loops(channel)) {
+    return;
+  }
+  if (std::all_of(g.begin(), g.end(), [](double one) { return one == 0.0; })) return;
   // A drive that goes sideways has a place for what it slips.
   const bool creeps = channel == Channel::creep && !recording.drive.sideways.empty();
   if (!creeps && !is_recordable(channel)) {

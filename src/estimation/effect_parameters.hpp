@@ -10,6 +10,7 @@
 //                    are range (1 + range_scale) + range, and bearing + bearing
 //   truth row        ahead, left, heading alike
 //   fix              ahead, left, heading (by which the way ahead is turned), and x, y
+//   loop             ahead, left, heading: in whose axes it tells the motion
 //
 // An effect is linear in its coefficient row by row; what rows add up to is not, and is computed
 // anew at every coefficient. Effects change no covariance.
@@ -24,7 +25,7 @@
 
 namespace trussmap {
 
-/// One coefficient. Per session a pattern per row (sighting, truth row, fix), or none at all.
+/// One coefficient. Per session a pattern per row (sighting, truth row, fix, loop), or none at all.
 struct EffectPattern {
   std::string name;
   std::vector<std::vector<DrivePattern>> drives;
@@ -32,6 +33,7 @@ struct EffectPattern {
   std::vector<std::vector<ViewPattern>> truths;
   double prior_sd = std::numeric_limits<double>::infinity();  ///< of the coefficient, about 0
   std::vector<std::vector<ViewPattern>> fixes = {};
+  std::vector<std::vector<ViewPattern>> loops = {};
   std::optional<double> held = {};  ///< known at this value: acts, but is no unknown
   double reference = 0.0;  ///< of the coefficient, where the patterns leave all as recorded
 };

@@ -68,7 +68,8 @@ Alignment onto_fixes(const SessionFixes& fixes, const std::vector<Pose>& poses, 
                      double span) {
   std::vector<FixedPlace> places;
   for (std::size_t k = 0; k < fixes.poses.size() && fixes.poses[k] < end; ++k) {
-    places.push_back({poses[idx(fixes.poses[k])].position(), fixes.places[k]});
+    const Pose& pose = poses[idx(fixes.poses[k])];
+    places.push_back({pose.position() + rotation(pose.heading) * fixes.antenna, fixes.places[k]});
   }
   const double limit = std::max(kFarOff * fixes.sd, kDriftShare * span);
   return align_to_most(places, limit, kFarOff * fixes.sd);
@@ -110,6 +111,7 @@ SessionFixes fixes_of(const RecordingProblem& session) {
   result.poses.reserve(fixes.size());
   result.places.reserve(fixes.size());
   for (const auto& [pose, one] : fixes) {
+    result.antenna = {one->mounted.ahead, one->mounted.left};
     result.poses.push_back(pose);
     result.places.emplace_back(one->value.head<2>());
   }

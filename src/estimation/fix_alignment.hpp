@@ -14,7 +14,8 @@ namespace trussmap {
 struct SessionFixes {
   std::vector<int> poses;  ///< ascending
   std::vector<Vector2> places;
-  double sd = 0.0;  ///< m, the median
+  double sd = 0.0;                    ///< m, the median
+  Vector2 antenna = Vector2::Zero();  ///< m, robot axes: where it is stated to sit
 };
 
 [[nodiscard]] SessionFixes fixes_of(const RecordingProblem& session);

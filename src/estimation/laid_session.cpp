@@ -68,7 +68,7 @@ LaidSession lay_backwards(const SessionToLay& session, LaidSession laid, int fir
     const Pose& pose = laid.poses[idx(k)] = compose(laid.poses[idx(k + 1)], inverse(motion));
     for (const Measurement* one : session.seen_at[idx(k)]) {
       if (!locates(*one) || laid.landmarks[idx(one->to)]) continue;
-      laid.landmarks[idx(one->to)] = one->kind->seen_from(*one, pose, {});
+      laid.landmarks[idx(one->to)] = one->kind->seen_from(*one, pose, one->mounted);
     }
   }
   return laid;

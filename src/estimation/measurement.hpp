@@ -21,8 +21,9 @@ struct Measurement {
   /// Added to the value: by segment_noise.hpp, and by student_tails.hpp to a sighting's.
   Vector4 value_offset = Vector4::Zero();
   Matrix4 whitener = Matrix4::Zero();  ///< rows x rows: inverse of the covariance's Cholesky factor
-  double tails = 0.0;  ///< degrees of freedom of Student's t (student_tails.hpp); 0: normal
-  int session = -1;    ///< -1: survey
+  ViewPattern mounted = {};  ///< where its sensor is stated to sit: its view without effects
+  double tails = 0.0;        ///< degrees of freedom of Student's t (student_tails.hpp); 0: normal
+  int session = -1;          ///< -1: survey
   /// Row of the session's stream; of what is driven, the segment.
   std::size_t source = 0;
   bool own_sd = false;  ///< the stream's row states it; the model's noise counts for nothing

@@ -28,6 +28,8 @@ bool MeasurementKind::shows(Channel channel, const Measurement& one) const {
       return acts_on_truth(channel);
     case RecordingStream::fixes:
       return acts_on_fixes(channel);
+    case RecordingStream::loops:
+      return acts_on_loops(channel);
     default:
       return false;
   }

@@ -28,9 +28,10 @@ enum class InMap { nothing, place, heading, pose };
 
 /// What Gauss and Newton leave out of its second derivatives (second_order.hpp).
 enum class Curvature {
-  none,              ///< linear in all but the view
-  of_a_way,          ///< rows R(theta)'(end - start) - something by which nothing moves
-  of_a_way_by_view,  ///< the same, R(theta + heading of the view)
+  none,                   ///< linear in all but the view
+  of_a_way,               ///< rows R(theta)'(end - start) - something by which nothing moves
+  of_a_way_by_view,       ///< the same, R(theta + heading of the view)
+  of_a_way_without_view,  ///< the same, where the view adds nothing
   general
 };
 

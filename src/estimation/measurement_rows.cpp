@@ -15,9 +15,10 @@ const std::vector<std::vector<ViewPattern>>* views_of(const EffectPattern& effec
       return &effect.truths;
     case RecordingStream::fixes:
       return &effect.fixes;
+    case RecordingStream::loops:
+      return &effect.loops;
     case RecordingStream::drive:
     case RecordingStream::survey:
-    case RecordingStream::loops:
       break;
   }
   return nullptr;
@@ -38,8 +39,9 @@ const ViewPattern* unit_view_of(const EffectPattern& effect, const Measurement& 
 }
 
 ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
-                    RecordingStream stream, std::size_t session, std::size_t row) {
-  ViewPattern sum;
+                    RecordingStream stream, std::size_t session, std::size_t row,
+                    const ViewPattern& mounted) {
+  ViewPattern sum = mounted;
   for (std::size_t k = 0; k < border.size(); ++k) {
     const ViewPattern* pattern = unit_view_of(border[k], stream, session, row);
     if (pattern != nullptr) sum.add(offsets[static_cast<Eigen::Index>(k)], *pattern);
@@ -50,7 +52,8 @@ ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offse
 ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
                     const Measurement& one) {
   if (one.session < 0) return {};
-  return view_of(border, offsets, one.kind->facts().stream, idx(one.session), one.source);
+  return view_of(border, offsets, one.kind->facts().stream, idx(one.session), one.source,
+                 one.mounted);
 }
 
 Ends ends_of(const RecordingProblem& problem, const Measurement& measurement,

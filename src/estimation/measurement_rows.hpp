@@ -10,18 +10,19 @@
 
 namespace trussmap {
 
-/// An effect's pattern for one sighting, truth row or fix; nullptr where it has none.
+/// An effect's pattern for one sighting, truth row, fix or loop; nullptr where it has none.
 [[nodiscard]] const ViewPattern* unit_view_of(const EffectPattern& effect,
                                               const Measurement& measurement);
 
-/// The sum of the effects' patterns for one sighting, truth row or fix; `offsets` are all
-/// coefficients of the border less their references.
+/// Where its sensor is stated to sit, and the sum of the effects' patterns for one sighting, truth
+/// row, fix or loop; `offsets` are all coefficients of the border less their references.
 [[nodiscard]] ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
                                   const Measurement& measurement);
 
-/// The same for a row of a session's stream.
+/// The same for a row of a session's stream, whose sensor is `mounted` there (mounted_views.hpp).
 [[nodiscard]] ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
-                                  RecordingStream stream, std::size_t session, std::size_t row);
+                                  RecordingStream stream, std::size_t session, std::size_t row,
+                                  const ViewPattern& mounted);
 
 /// Values of what a measurement lies between.
 [[nodiscard]] Ends ends_of(const RecordingProblem& problem, const Measurement& measurement,

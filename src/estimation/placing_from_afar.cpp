@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "estimation/kinds/sighted.hpp"
 #include "estimation/laid_session.hpp"
 #include "estimation/multilateration.hpp"
 #include "estimation/triangulation.hpp"
@@ -24,12 +25,14 @@ AfarReadings readings_from_afar(const SessionToLay& session, const LaidSession& 
     for (const Measurement* one : session.seen_at[idx(k)]) {
       if (!is_sighting(*one) || locates(*one) || laid.landmarks[idx(one->to)]) continue;
       const double own = std::sqrt(covariance_of(*one)(0, 0));
+      const Vector2 from = sensor_at(pose, one->mounted);
       if (begins_with(*one, "bearing")) {
-        found.directions[one->to].push_back(
-            {pose.position(), pose.heading + one->value[0], std::hypot(own, kHeadingSd)});
+        found.directions[one->to].push_back({from,
+                                             pose.heading + one->mounted.heading + one->value[0],
+                                             std::hypot(own, kHeadingSd)});
       } else {
         found.ranges[one->to].push_back(
-            {pose.position(), one->value[0], std::hypot(own, session.options.map_sd)});
+            {from, one->value[0], std::hypot(own, session.options.map_sd)});
       }
     }
   }

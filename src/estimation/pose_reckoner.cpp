@@ -91,10 +91,11 @@ void PoseReckoner::look(const std::vector<const Measurement*>& seen, bool correc
   for (const Measurement* one : seen) {
     if (locates(*one)) {
       std::optional<Vector2>& landmark = landmarks_[idx(one->to)];
-      if (!landmark) landmark = one->kind->seen_from(*one, pose_, {});
+      if (!landmark) landmark = one->kind->seen_from(*one, pose_, one->mounted);
     } else if (is_yaw(*one)) {
       std::optional<double>& orientation = orientations_[idx(one->to - problem_.pose_end())];
-      if (!orientation) orientation = wrap_angle(pose_.heading + one->value[0]);
+      if (!orientation)
+        orientation = wrap_angle(pose_.heading + one->mounted.heading + one->value[0]);
     }
   }
 }
@@ -110,7 +111,7 @@ void PoseReckoner::meet(const Measurement& one) {
   at.from = pose_;
   if (is_sighting(one)) at.landmark = *landmarks_[idx(one.to)];
   if (is_yaw(one)) at.orientation = *orientations_[idx(one.to - problem_.pose_end())];
-  const MeasurementRows rows = one.kind->rows(one, at, one.value, {});
+  const MeasurementRows rows = one.kind->rows(one, at, one.value, one.mounted);
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(one.rows, covariance_.cols());
   H.leftCols<3>() = rows.by_from.topRows(one.rows);
   update(H, -rows.error.head(one.rows),

@@ -3,6 +3,7 @@
 #include "estimation/recording_adjustment.hpp"
 
 #include "estimation/kinds/kinds.hpp"
+#include "estimation/kinds/sighted.hpp"
 #include "estimation/multilateration.hpp"
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_robust.hpp"
@@ -267,7 +268,8 @@ std::vector<std::string> mirror_warnings(const RecordingProblem& problem,
       continue;
     }
     const Pose& pose = adjustment.state.poses[idx(one.from - problem.landmark_count())];
-    readings[idx(one.to)].push_back({pose.position(), one.value[0], 1.0 / one.whitener(0, 0)});
+    readings[idx(one.to)].push_back(
+        {sensor_at(pose, one.mounted), one.value[0], 1.0 / one.whitener(0, 0)});
   }
   std::vector<std::string> warnings;
   for (std::size_t k = 0; k < readings.size(); ++k) {

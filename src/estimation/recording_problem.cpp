@@ -4,6 +4,7 @@
 
 #include "estimation/gyro_excess.hpp"
 #include "estimation/kinds/kinds.hpp"
+#include "estimation/mounted_views.hpp"
 #include "estimation/noise_states.hpp"
 #include "estimation/session_instants.hpp"
 #include "parallel/parallel_for.hpp"
@@ -210,6 +211,19 @@ int node_of(const RecordingProblem& problem, NodeType type, int number) {
 
 }  // namespace
 
+namespace {
+
+/// Its view begins where the model has its sensor. What a robot that stands on a code on the floor
+/// sees of it is turned into the robot's axes.
+void mount(Measurement& one, const Mountings& mounted) {
+  one.mounted = mounted_view(mounted, one.kind->facts().stream);
+  if (!is_standing(one)) return;
+  one.value.head<2>() = rotation(one.mounted.heading) * one.value.head<2>().eval();
+  one.mounted.heading = 0.0;
+}
+
+}  // namespace
+
 RecordingProblem make_problem(const std::vector<DrivenRecording>& recordings, const Model& model,
                               const ProblemOptions& options) {
   GrowingProblem growing;
@@ -221,6 +235,7 @@ RecordingProblem make_problem(const std::vector<DrivenRecording>& recordings, co
   for (Measurement& one : problem.measurements) {
     one.from = node_of(problem, one.kind->facts().from, one.from);
     one.to = node_of(problem, one.kind->facts().to, one.to);
+    mount(one, model.robot.mounted);
   }
   add_processes(problem, recordings, model);
   return problem;

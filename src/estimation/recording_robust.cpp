@@ -287,7 +287,7 @@ void heed_majority(const RecordingProblem& problem, RecordingState& state) {
   for (const Measurement& one : problem.measurements) {
     if (!locates(one)) continue;
     const Pose& pose = state.poses[idx(one.from - problem.landmark_count())];
-    places[idx(one.to)].push_back(*one.kind->seen_from(one, pose, {}));
+    places[idx(one.to)].push_back(*one.kind->seen_from(one, pose, one.mounted));
   }
   const std::vector<Vector2> before = state.landmarks;
   const auto others = [&](std::size_t landmark, const Vector2& place) {

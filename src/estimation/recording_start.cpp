@@ -32,7 +32,10 @@ std::optional<std::pair<int, const Measurement*>> first_truth(const SessionToLay
 LaidSession lay_from_truth(const SessionToLay& session, int first, const Measurement& truth,
                            LaidSession laid) {
   const int poses = session.pose_count();
-  const KnownPose start{{truth.value[0], truth.value[1], truth.value[2]}, covariance_of(truth)};
+  const double heading = truth.value[2] - truth.mounted.heading;
+  const Vector2 place =
+      truth.value.head<2>() - rotation(heading) * Vector2(truth.mounted.ahead, truth.mounted.left);
+  const KnownPose start{{place.x(), place.y(), heading}, covariance_of(truth)};
   laid = lay_poses(session, std::move(laid), first, poses - 1, start);
   laid = lay_backwards(session, std::move(laid), first);
   return place_from_afar(session, std::move(laid), poses, true);
@@ -103,7 +106,8 @@ std::vector<double> orientations_seen_from(const RecordingProblem& problem,
   for (const Measurement& one : problem.measurements) {
     if (!is_yaw(one)) continue;
     const Pose& pose = poses[idx(one.from - problem.landmark_count())];
-    sums[idx(one.to - problem.pose_end())] += rotation(pose.heading + one.value[0]).col(0);
+    sums[idx(one.to - problem.pose_end())] +=
+        rotation(pose.heading + one.mounted.heading + one.value[0]).col(0);
   }
   std::vector<double> result;
   result.reserve(sums.size());
@@ -157,7 +161,7 @@ RecordingState dead_reckoned(const RecordingProblem& problem) {
       for (const Measurement* one : session.seen_at[idx(k)]) {
         if (!locates(*one)) continue;
         const std::size_t landmark = idx(part.landmarks[idx(one->to)]);
-        sums[landmark] += *one->kind->seen_from(*one, pose, {});
+        sums[landmark] += *one->kind->seen_from(*one, pose, one->mounted);
         counts[landmark] += 1.0;
       }
     }

@@ -51,7 +51,8 @@ SecondOrder second_order(const RecordingProblem& problem, const Measurement& one
   SecondOrder result = SecondOrder::Zero();
   const Curvature curvature = one.kind->facts().curvature;
   if (curvature == Curvature::none) return result;
-  if (curvature != Curvature::general && !with_view) {
+  const bool bent = curvature == Curvature::of_a_way_without_view && !view.vector().isZero(0.0);
+  if (curvature != Curvature::general && !with_view && !bent) {
     return second_order_of_way(problem, one, state, view, weighted);
   }
   const auto slopes = [&](const ViewPattern& at) -> Slopes {

@@ -120,7 +120,9 @@ MapSoFar with_session(MapSoFar known, const RecordingProblem& problem, const Pos
     const int pose = one.from - problem.pose_node(span.first);
     if (pose < 0 || pose >= span.count) continue;
     std::optional<double>& orientation = known.orientations[idx(one.to - problem.pose_end())];
-    if (!orientation) orientation = wrap_angle(laid.poses[idx(pose)].heading + one.value[0]);
+    if (!orientation) {
+      orientation = wrap_angle(laid.poses[idx(pose)].heading + one.mounted.heading + one.value[0]);
+    }
   }
   return known;
 }

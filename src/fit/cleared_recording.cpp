@@ -5,6 +5,7 @@
 #include "drive/body_motion.hpp"
 #include "effects/steering.hpp"
 #include "estimation/measurement_rows.hpp"
+#include "estimation/mounted_views.hpp"
 #include "fit/effect_columns.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 #include "trussmap/dead_reckoning.hpp"
@@ -56,9 +57,12 @@ void clear_drive(const DrivenRecording& recorded, const EffectParameters& border
 }
 
 void clear_sightings(const DrivenRecording& recorded, const EffectParameters& border,
-                     const Eigen::VectorXd& offsets, int session, ClearedRecording& result) {
+                     const Eigen::VectorXd& offsets, int session, const Robot& robot,
+                     ClearedRecording& result) {
+  constexpr RecordingStream kStream = RecordingStream::sightings;
+  const ViewPattern mounted = mounted_view(robot.mounted, kStream);
   for (std::size_t k = 0; k < recorded.sightings.size(); ++k) {
-    const ViewPattern view = view_of(border, offsets, RecordingStream::sightings, idx(session), k);
+    const ViewPattern view = view_of(border, offsets, kStream, idx(session), k, mounted);
     const Sighting& seen = recorded.sightings[k];
     Sighting& clear = result.recording.sightings[k];
     result.sensor[k] = {view.ahead, view.left};
@@ -75,7 +79,7 @@ void clear(const std::vector<DrivenRecording>& timed, const EffectParameters& bo
            std::vector<ClearedRecording>& result) {
   for (std::size_t s = 0; s < timed.size(); ++s) {
     clear_drive(timed[s], border, offsets, s, robot, result[s]);
-    clear_sightings(timed[s], border, offsets, static_cast<int>(s), result[s]);
+    clear_sightings(timed[s], border, offsets, static_cast<int>(s), robot, result[s]);
   }
 }
 
@@ -106,8 +110,11 @@ std::vector<ClearedRecording> cleared(const std::vector<DrivenRecording>& record
                                       const Model& model) {
   std::vector<ClearedRecording> result;
   if (model.effects.empty()) {
+    const EffectParameters none;
     for (const DrivenRecording& one : with_gyro(recorded, model.robot, model.noise)) {
       result.push_back(as_recorded(one));
+      const int session = static_cast<int>(result.size()) - 1;
+      clear_sightings(one, none, {}, session, model.robot, result.back());
     }
     return result;
   }

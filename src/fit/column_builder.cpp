@@ -40,6 +40,7 @@ std::vector<Part> parts_of(const Effect& effect, std::size_t sessions) {
 Instant instant_of(RecordingStream stream) {
   return stream == RecordingStream::truth   ? Instant::truth
          : stream == RecordingStream::fixes ? Instant::fix
+         : stream == RecordingStream::loops ? Instant::loop
                                             : Instant::sighting;
 }
 
@@ -51,6 +52,7 @@ std::vector<Instant> instants_of(Channel channel) {
   if (acts_on_sightings(channel)) instants.push_back(Instant::sighting);
   if (acts_on_truth(channel)) instants.push_back(Instant::truth);
   if (acts_on_fixes(channel)) instants.push_back(Instant::fix);
+  if (acts_on_loops(channel)) instants.push_back(Instant::loop);
   return instants;
 }
 

@@ -6,6 +6,7 @@
 #include "drive/row_motion.hpp"
 #include "drive/wheel_kinematics.hpp"
 #include "effects/channel_physics.hpp"
+#include "estimation/mounted_views.hpp"
 #include "fit/online_effects.hpp"
 #include "odometry/row_reckoner.hpp"
 #include "odometry/wheels_and_gyro.hpp"
@@ -304,13 +305,14 @@ class __attribute__((visibility("hidden"))) CorrectedOdometry::State {
     const OnlineFacts facts{last_, covariates_};
     CorrectedSighting result{sighting};
     result.sighting.t = effects_.cleared_time(sighting.t, facts);
-    const ViewPattern added = effects_.view(facts, now_.map_pose());
+    ViewPattern added = mounted_view(at_hand_.robot().mounted, RecordingStream::sightings);
+    added.add(1.0, effects_.view(facts, now_.map_pose()));
     result.sensor_robot = {added.ahead, added.left};
-    result.sighting.yaw = wrap_angle(sighting.yaw - added.yaw);
+    result.sighting.yaw = wrap_angle(sighting.yaw - added.yaw + added.heading);
     if (sighting.standing()) return result;
     result.sighting.range =
         std::max((sighting.range - added.range) / (1.0 + added.range_scale), 0.0);
-    result.sighting.bearing = wrap_angle(sighting.bearing - added.bearing);
+    result.sighting.bearing = wrap_angle(sighting.bearing - added.bearing + added.heading);
     return result;
   }
 

@@ -93,9 +93,11 @@ const RowVariables& ShapeContext::variables(std::size_t session, Instant at) con
       case Instant::truth:
         return event_variables(one, robot_, path, one.truth, number);
       case Instant::fix:
+        return event_variables(one, robot_, path, one.fixes, number);
+      case Instant::loop:
         break;
     }
-    return event_variables(one, robot_, path, one.fixes, number);
+    return event_variables(one, robot_, path, one.loops, number);
   };
   return variables_.emplace(key, made()).first->second;
 }
@@ -152,6 +154,7 @@ Column make_column(Channel channel, const Shape& shape, int session, const Shape
     add(Instant::sighting, acts_on_sightings(channel), column.pattern.sightings);
     add(Instant::truth, acts_on_truth(channel), column.pattern.truths);
     add(Instant::fix, acts_on_fixes(channel), column.pattern.fixes);
+    add(Instant::loop, acts_on_loops(channel), column.pattern.loops);
     return column;
   }
   const bool readings = acts_on(channel) == ActsOn::readings;

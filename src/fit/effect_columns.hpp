@@ -65,7 +65,7 @@ class ShapeContext {
 
   /// Values of a shape per session, per row at its middle or end, per sighting, truth row, fix.
   /// Throws std::invalid_argument like Shape::values.
-  enum class Instant { middle, end, sighting, truth, fix };
+  enum class Instant { middle, end, sighting, truth, fix, loop };
   [[nodiscard]] std::vector<std::vector<double>> values(const Shape& shape, Instant at) const;
   [[nodiscard]] const RowVariables& variables(std::size_t session, Instant at) const;
   /// Makes the variables of all sessions at these instants.

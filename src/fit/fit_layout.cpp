@@ -69,7 +69,7 @@ Vector2 place_seen_from(const RecordingProblem& problem, int landmark,
     const int pose = one.from - problem.landmark_count();
     if (one.to != landmark || pose < 0 || pose >= static_cast<int>(poses.size())) continue;
     const std::optional<Vector2> seen =
-        locates(one) ? one.kind->seen_from(one, poses[idx(pose)], {}) : std::nullopt;
+        locates(one) ? one.kind->seen_from(one, poses[idx(pose)], one.mounted) : std::nullopt;
     sum += seen.value_or(poses[idx(pose)].position());
     count += 1.0;
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/kinds/kinds.hpp"
 #include "estimation/measurement_rows.hpp"
+#include "estimation/mounted_views.hpp"
 #include "fit/replica_stages.hpp"
 
 #include <algorithm>
@@ -51,13 +52,19 @@ void draw_survey(std::size_t session, DrawnSurvey& drawn, Replica& replica, Norm
   }
 }
 
+ViewPattern view_at(const Replica& replica, RecordingStream stream, std::size_t session,
+                    std::size_t row) {
+  return view_of(replica.border, replica.offsets, stream, session, row,
+                 mounted_view(replica.fit.model.robot.mounted, stream));
+}
+
 void draw_truth(std::size_t session, Replica& replica, NormalDraws& draw) {
   DrivenRecording& recording = replica.timed[session];
   for (std::size_t row = 0; row < recording.truth.size(); ++row) {
     TruthRow& one = recording.truth[row];
     kinds::draw(one, pose_at(recording.drive, replica.paths[session], one.t),
-                view_of(replica.border, replica.offsets, RecordingStream::truth, session, row),
-                replica.fit.model.noise, draw);
+                view_at(replica, RecordingStream::truth, session, row), replica.fit.model.noise,
+                draw);
   }
 }
 
@@ -67,12 +74,13 @@ void draw_fixes_and_loops(std::size_t session, Replica& replica, NormalDraws& dr
   const auto pose = [&](double t) { return pose_at(recording.drive, replica.paths[session], t); };
   for (std::size_t row = 0; row < recording.fixes.size(); ++row) {
     Fix& one = recording.fixes[row];
-    kinds::draw(one, pose(one.t),
-                view_of(replica.border, replica.offsets, RecordingStream::fixes, session, row),
-                noise, draw);
+    kinds::draw(one, pose(one.t), view_at(replica, RecordingStream::fixes, session, row), noise,
+                draw);
   }
-  for (Loop& one : recording.loops) {
-    kinds::draw(one, relative(pose(one.t), pose(one.t2)), noise, draw);
+  for (std::size_t row = 0; row < recording.loops.size(); ++row) {
+    Loop& one = recording.loops[row];
+    kinds::draw(one, relative(pose(one.t), pose(one.t2)),
+                view_at(replica, RecordingStream::loops, session, row), noise, draw);
   }
 }
 

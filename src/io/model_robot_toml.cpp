@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -52,6 +54,54 @@ void read_columns(const toml::node& node, Robot& result) {
       refuse(one.source(), "column \"" + *twin + "\" is named twice, expected each wheel once");
     }
   }
+}
+
+/// A table of [robot] that says where a sensor sits.
+struct MountingKey {
+  std::string_view name;
+  std::optional<Mounting> Mountings::*place;
+  bool turns = true;  ///< has a yaw
+};
+
+constexpr MountingKey kMountings[] = {{"sensor", &Mountings::sensor},
+                                      {"antenna", &Mountings::antenna, false},
+                                      {"tracked", &Mountings::tracked},
+                                      {"scanner", &Mountings::scanner}};
+
+const MountingKey* mounting_named(std::string_view name) {
+  const auto* found = std::find_if(std::begin(kMountings), std::end(kMountings),
+                                   [name](const MountingKey& one) { return one.name == name; });
+  return found == std::end(kMountings) ? nullptr : found;
+}
+
+Mounting read_mounting(const toml::table& table, const MountingKey& kind) {
+  Mounting result;
+  for (const auto& [key, value] : table) {
+    if (key == "x") {
+      result.x = toml_figure(value, "x");
+    } else if (key == "y") {
+      result.y = toml_figure(value, "y");
+    } else if (key == "yaw" && kind.turns) {
+      result.yaw = toml_figure(value, "yaw");
+    } else {
+      refuse(key.source(),
+             fmt::format("key \"{}\" in [robot.{}] is unknown, expected x, y{}",
+                         std::string(key.str()), kind.name, kind.turns ? ", yaw" : ""));
+    }
+  }
+  return result;
+}
+
+std::string mountings_text(const Mountings& mounted) {
+  std::string text;
+  for (const MountingKey& one : kMountings) {
+    const std::optional<Mounting>& at = mounted.*one.place;
+    if (!at) continue;
+    text += fmt::format("[robot.{}]\nx = {}  # m ahead\ny = {}  # m to the left\n", one.name,
+                        toml_number(at->x), toml_number(at->y));
+    if (one.turns && at->yaw != 0.0) text += "yaw = " + toml_number(at->yaw) + "  # rad\n";
+  }
+  return text;
 }
 
 /// Its column is added to `columns`.
@@ -166,11 +216,16 @@ Robot read_robot(const toml::table& robot) {
   const DriveKeys& keys = keys_of(result.drive);
   for (const auto& [key, node] : robot) {
     const std::string_view name = key.str();
+    if (const MountingKey* mounting = mounting_named(name)) {
+      result.mounted.*mounting->place =
+          read_mounting(toml_table(node, "[robot." + std::string(name) + "]"), *mounting);
+      continue;
+    }
     if (name != "drive" && keys.names.find(name) == keys.names.end()) {
       std::string expected;
       for (const std::string_view one : keys.names) expected += ", " + std::string(one);
       refuse(key.source(), fmt::format("key \"{}\" in [robot] is unknown for drive {}, expected "
-                                       "drive{}",
+                                       "drive{}, sensor, antenna, tracked, scanner",
                                        name, name_of(result.drive), expected));
     }
     if (name == "wheelbase") {
@@ -230,7 +285,7 @@ std::string robot_text(const Robot& robot) {
             "\ndirection = " + toml_number(one.direction) + "\n";
     if (one.roller != 0.0) text += "roller = " + toml_number(one.roller) + "\n";
   }
-  return text;
+  return text + mountings_text(robot.mounted);
 }
 
 }  // namespace trussmap

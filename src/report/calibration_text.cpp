@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -88,6 +89,10 @@ std::string text(const FixAlignment& fixes) {
       1000.0 * fixes.ahead, 1000.0 * fixes.left, lateness(late));
 }
 
+std::string_view words_of(const CalibratedMounting& mounting) {
+  return mounting.of == "tracked" ? "truth's point" : mounting.of;
+}
+
 }  // namespace
 
 std::string calibration_text(const WheelCalibration& found, const CalibrationValidation& held,
@@ -117,6 +122,12 @@ std::string calibration_text(const WheelCalibration& found, const CalibrationVal
     const double size = unit.empty() ? 100.0 : 1.0;
     const QuantityText cells = quantity_text(size * one.g.value, size * one.g.sd);
     table.rows.push_back({name, cells.value, "\u00b1 " + cells.error, unit.empty() ? "%" : unit});
+  }
+  for (const CalibratedMounting& one : found.mountings) {
+    const std::string of(words_of(one));
+    row((of + ", ahead of the axle").c_str(), one.x, "m");
+    row((of + ", to its left").c_str(), one.y, "m");
+    row((of + ", turned to the left").c_str(), one.yaw, "rad");
   }
   out += "\n" + table_text(table, style);
   const double dispersion = found.dof > 0 ? found.chi2 / found.dof : 0.0;

@@ -19,6 +19,7 @@ constexpr double kDelayOverrun = 0.4;  // m: a robot that stands shows no delay
 Robot geometry_of(const SimulationSettings& settings) {
   Robot robot = usual_robot(drive_named(settings.drive), settings.wheelbase, settings.length);
   robot.wheel_left = settings.wheel_left;
+  robot.mounted = settings.mounted;
   return robot;
 }
 
@@ -45,6 +46,7 @@ WheeledRobot make_robot(const SimulationSettings& settings) {
   if (settings.ranges_alone) robot.sensor_parts = SensorParts::range_alone;
   if (settings.bearings_alone) robot.sensor_parts = SensorParts::bearing_alone;
   robot.loops = settings.loops;
+  robot.scan_every = settings.scan_every;
   robot.markers = settings.markers;
   robot.noise.yaw = settings.yaw_noise;
   robot.noise.loop = settings.loop_noise;

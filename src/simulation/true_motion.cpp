@@ -15,7 +15,10 @@
 #include <numbers>
 #include <random>
 #include <span>
+#include <stdexcept>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -101,17 +104,24 @@ struct PlannedLeg {
   LegShape shape;
 };
 
-/// From here to where the axle must stop for the sensor to be on the target: that depends on the
-/// heading of arrival, which depends on the way. Far shorter than the way, a lever converges.
+/// From here to where the axle must stop for the sensor to be on the target. On arrival the robot
+/// is turned against its way w by a known angle, and so its sensor lies at a known s in the way's
+/// axes: w + s is the target, and what s has aside says how far beside the target the way leads.
 Vector2 way_to(const Vector2& target, const PlannedLeg& leg, const Pose& here) {
-  Vector2 straight = target - here.position();
+  const Vector2 straight = target - here.position();
   if (leg.sensor.isZero(0.0)) return straight;
-  Vector2 way = straight;
-  for (int pass = 0; pass < kPasses; ++pass) {
-    const double arrival = direction(way) - direction(leg.shape.end) + leg.shape.headings.back();
-    way = straight - rotation(arrival) * leg.sensor;
+  const double distance = straight.norm();
+  const Vector2 s = rotation(leg.shape.headings.back() - direction(leg.shape.end)) * leg.sensor;
+  const double length =
+      std::abs(s.y()) < distance ? std::sqrt(distance * distance - s.y() * s.y()) - s.x() : 0.0;
+  if (!(length > 0.0)) {
+    throw std::invalid_argument(
+        fmt::format("the sensor sits {:.3g} m from the axle, which is too far for a landmark "
+                    "{:.3g} m ahead",
+                    leg.sensor.norm(), distance));
   }
-  return way;
+  const double course = direction(straight) - std::asin(s.y() / distance);
+  return length * rotation(course).col(0);
 }
 
 /// What is to be turned before a leg of this shape leads there, rad.

@@ -243,24 +243,76 @@ std::vector<Fix> fixes_of(const TrueMotion& motion, const WheeledRobot& robot, s
   return fixes;
 }
 
-/// The pose at each stop from that at the last stop at the same landmark.
-std::vector<Loop> loops_of(const TrueMotion& motion, const WheeledRobot& robot,
-                           std::uint64_t seed) {
+/// A pose and the row it ends, of a loop.
+struct ScanPose {
+  double t = 0.0;  ///< s
+  Pose pose;
+  std::size_t row = 0;
+};
+
+/// Where the robot's scanner is seen from where it was.
+Loop loop_between(const ScanPose& from, const ScanPose& to, const WheeledRobot& robot,
+                  const ChannelGains& gains, Dice& dice) {
+  const auto scanner_at = [&gains](const ScanPose& at) {
+    const auto g = [&](Channel channel) { return gain(gains, channel, at.row); };
+    return compose(at.pose,
+                   {g(Channel::scanner), g(Channel::scanner_left), g(Channel::scanner_yaw)});
+  };
+  const Pose step = relative(scanner_at(from), scanner_at(to));
+  const double dx = step.x + dice.deviation(robot.noise.loop);
+  const double dy = step.y + dice.deviation(robot.noise.loop);
+  const double turned = step.heading + dice.deviation(robot.noise.loop_heading);
+  return {from.t, to.t, dx, dy, wrap_angle(turned)};
+}
+
+/// The pose at each stop from that at the last stop at the same landmark, and from scan to scan.
+std::vector<Loop> loops_of(const TrueMotion& motion, const WheeledRobot& robot, std::uint64_t seed,
+                           const ChannelGains& gains) {
   std::vector<Loop> loops;
-  if (!robot.loops) return loops;
+  if (!robot.loops && !(robot.scan_every > 0.0)) return loops;
   Dice dice(seed, Stream::loops);
-  std::map<int, const TrueStop*> last;
+  std::map<int, ScanPose> last;
   for (const TrueStop& stop : motion.stops) {
-    const auto [before, first] = last.try_emplace(stop.landmark, &stop);
+    if (!robot.loops) break;
+    const ScanPose here{stop.t, stop.pose, stop.rows == 0 ? 0 : stop.rows - 1};
+    const auto [before, first] = last.try_emplace(stop.landmark, here);
     if (first) continue;
-    const Pose step = relative(before->second->pose, stop.pose);
-    const double dx = step.x + dice.deviation(robot.noise.loop);
-    const double dy = step.y + dice.deviation(robot.noise.loop);
-    const double turned = step.heading + dice.deviation(robot.noise.loop_heading);
-    loops.push_back({before->second->t, stop.t, dx, dy, wrap_angle(turned)});
-    before->second = &stop;
+    loops.push_back(loop_between(before->second, here, robot, gains, dice));
+    before->second = here;
+  }
+  ScanPose scan{0.0, motion.start, 0};
+  for (std::size_t k = 0; k < motion.rows.size() && robot.scan_every > 0.0; ++k) {
+    const ScanPose here{motion.rows[k].t, motion.rows[k].pose, k};
+    if (here.t - scan.t < robot.scan_every) continue;
+    loops.push_back(loop_between(scan, here, robot, gains, dice));
+    scan = here;
   }
   return loops;
+}
+
+/// The places of its sensors as effects.
+std::vector<Effect> effects_of(const Mountings& mounted) {
+  std::vector<Effect> effects;
+  const auto add = [&effects](Channel channel, double g) {
+    if (g == 0.0) return;
+    effects.push_back({std::string(name_of(channel)), channel, {"1"}, {g}});
+  };
+  if (const auto& at = mounted.sensor) {
+    add(Channel::lever, at->x);
+    add(Channel::lever_left, at->y);
+    add(Channel::bearing, -at->yaw);
+    add(Channel::sighting_yaw, -at->yaw);
+  }
+  if (const auto& at = mounted.antenna) {
+    add(Channel::antenna, at->x);
+    add(Channel::antenna_left, at->y);
+  }
+  if (const auto& at = mounted.scanner) {
+    add(Channel::scanner, at->x);
+    add(Channel::scanner_left, at->y);
+    add(Channel::scanner_yaw, at->yaw);
+  }
+  return effects;
 }
 
 void check(const WheeledRobot& robot) {
@@ -273,6 +325,9 @@ void check(const WheeledRobot& robot) {
     }
   }
   check_wheels(robot.geometry);
+  if (!(robot.scan_every >= 0.0)) {
+    throw std::invalid_argument("scans must be 0 s or more apart");
+  }
   if (!(robot.fix_rate >= 0.0) || !(robot.fix_rate <= 1e3)) {
     throw std::invalid_argument("the rate of fixes must be 0 to 1000 Hz");
   }
@@ -301,7 +356,7 @@ Recording record(const TrueMotion& motion, const Mesh& mesh, const WheeledRobot&
     }
   }
   recording.fixes = fixes_of(motion, robot, seed, gains);
-  recording.loops = loops_of(motion, robot, seed);
+  recording.loops = loops_of(motion, robot, seed, gains);
   if (gains.contains(Channel::delay)) {
     std::stable_sort(recording.sightings.begin(), recording.sightings.end(),
                      [](const Sighting& a, const Sighting& b) { return a.t < b.t; });
@@ -356,8 +411,10 @@ SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
     throw std::invalid_argument(
         fmt::format("a covariate's name is \"{}\", which is taken by a wheel", name));
   }
+  std::vector<Effect> acting = effects_of(robot.geometry.mounted);
+  acting.insert(acting.end(), effects.effects.begin(), effects.effects.end());
   MotionUnderEffects laid =
-      lay_path_under(mesh, walk, patient, robot.geometry, effects.effects, effects.rates, seed);
+      lay_path_under(mesh, walk, patient, robot.geometry, acting, effects.rates, seed);
   SimulatedDrive drive;
   drive.recording = record(laid.motion, mesh, robot, seed, laid.gains);
   drive.recording.survey = survey(mesh, robot.noise.survey, seed);

@@ -147,6 +147,35 @@ TEST(SlowGrossConstants, ADiscoveryBeginsWithThem) {
   EXPECT_EQ(result.first.verdict, Diagnosis::Verdict::missing);
 }
 
+/// Metres off, where no score test about the fit without it means anything.
+TEST(SlowGrossConstants, FindASensorFarOffTheAxle) {
+  SimulationSettings settings;
+  settings.mesh = "3x3";
+  settings.spacing = 15.0;
+  settings.uneven = true;
+  settings.tours = 1;
+  settings.seed = 10;
+  settings.full_turns = 2;
+  settings.no_compass = true;
+  settings.speeds = {0.8, 1.5};
+  settings.fix_rate = 0.5;
+  settings.mounted.antenna = Mounting{3.75, 0.4, 0.0};
+  SimulatedRecording one = simulate(settings, {});
+  one.model.robot.mounted = {};
+  one.drive.recording.sightings.clear();
+  one.drive.recording.survey.clear();
+  DiagnoseOptions options;
+  options.fit = gated_fit();
+  const Diagnosis result = diagnose({one.drive.recording}, one.model, options);
+  ASSERT_EQ(found_by(result).size(), 2U);
+  EXPECT_EQ(result.missing, "antenna ahead of the axle");
+  for (const auto& [k, truth] : {std::pair(0, 3.75), std::pair(1, 0.4)}) {
+    const Finding& found = result.findings.at(static_cast<std::size_t>(k));
+    EXPECT_NEAR(found.effect.coefficients.at(0), truth, 3.0 * found.sd.at(0));
+    EXPECT_LT(found.sd.at(0), 0.05);
+  }
+}
+
 /// The model found starts every later fit where it belongs.
 TEST(SlowGrossConstants, AModelThatHasThemIsFittedFromThere) {
   const SimulatedRecording one = simulate(small_world(9), {catalogue_effect("wheelbase", {-0.2})});

@@ -146,6 +146,22 @@ TEST(ChannelPhysics, FixesHaveAnAntennaAndAClockOfTheirOwn) {
   }
 }
 
+TEST(ChannelPhysics, LoopsHaveAScannerOfTheirOwn) {
+  const ViewVector all = view_pattern(Channel::scanner, 0.2, 0.6, -0.3).vector() +
+                         view_pattern(Channel::scanner_left, -0.1, 0.6, -0.3).vector() +
+                         view_pattern(Channel::scanner_yaw, 0.5, 0.6, -0.3).vector();
+  const ViewVector expected =
+      (ViewVector() << 0.2, -0.1, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0).finished();
+  EXPECT_LT((all - expected).norm(), 1e-15);
+  for (const ChannelFacts& one : channels()) {
+    if (!acts_on_loops(one.channel)) continue;
+    EXPECT_FALSE(acts_on_sightings(one.channel)) << one.name;
+    EXPECT_FALSE(acts_on_truth(one.channel)) << one.name;
+    EXPECT_FALSE(acts_on_fixes(one.channel)) << one.name;
+    EXPECT_FALSE(is_recordable(one.channel)) << one.name;
+  }
+}
+
 TEST(ChannelPhysics, ATruthsHeadingIsNothingThatSightingsKnow) {
   EXPECT_FALSE(acts_on_sightings(Channel::truth_heading));
   EXPECT_EQ(acts_on(Channel::truth_heading), ActsOn::views);
@@ -168,6 +184,7 @@ TEST(ChannelPhysics, AYawIsNothingThatRangesAndTruthKnow) {
 TEST_P(EveryChannel, AddsToAViewWhatTheTableSays) {
   if (GetParam() == Channel::sighting_yaw) return;                                // above
   if (GetParam() == Channel::truth_heading || acts_on_fixes(GetParam())) return;  // above
+  if (acts_on_loops(GetParam())) return;                                          // above
   const double speed = 0.6;
   const double turn_rate = -0.3;
   const double step = 1e-4;
@@ -237,7 +254,8 @@ TEST(Channels, HaveACompleteRowEachInTheirOrder) {
         << one.facts.name;
     const bool views = one.target.kind == ActsOn::views;
     EXPECT_EQ(views, one.view_pattern != nullptr) << one.facts.name;
-    EXPECT_EQ(views, one.target.sightings || one.target.truth || one.target.fixes)
+    EXPECT_EQ(views,
+              one.target.sightings || one.target.truth || one.target.fixes || one.target.loops)
         << one.facts.name;
     EXPECT_NE(one.view_pattern != nullptr,
               one.wheel_pattern != nullptr || one.gyro_pattern != nullptr)
@@ -257,7 +275,7 @@ TEST(Channels, OfSingleWheelsAreCalledByTheirNumber) {
 }
 
 TEST(Channels, HaveOneNameEach) {
-  EXPECT_EQ(channels().size(), 35U);
+  EXPECT_EQ(channels().size(), 38U);
   for (const ChannelFacts& one : channels()) {
     EXPECT_EQ(parse_channel(one.name), one.channel);
     EXPECT_EQ(channel_named(one.name), one.channel);

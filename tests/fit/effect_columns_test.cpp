@@ -65,6 +65,9 @@ class World {
       const Point place = made_.places[row];
       made_.recording.fixes.push_back({drive().t[row], place.real() + 0.02, place.imag() - 0.01});
     }
+    for (std::size_t row = 13; row + 60 < made_.places.size(); row += 97) {
+      made_.recording.loops.push_back({drive().t[row], drive().t[row + 60], 0.3, -0.1, 0.2});
+    }
     SessionPath path;
     path.start = pose_of(at_end(-1));
     for (std::size_t row = 0; row < made_.places.size(); ++row) {
@@ -207,7 +210,21 @@ class World {
     return {found.real() - one.value[0], found.imag() - one.value[1], 0.0, 0.0};
   }
 
+  [[nodiscard]] Vector4 loop(const Measurement& one, Channel channel, double g) const {
+    const TruePose from = at(time_of(one.from));
+    const TruePose to = at(time_of(one.to));
+    const Point lever(channel == Channel::scanner ? g : 0.0,
+                      channel == Channel::scanner_left ? g : 0.0);
+    const double yaw = channel == Channel::scanner_yaw ? g : 0.0;
+    const Point way = to.place + lever * std::polar(1.0, to.heading) - from.place -
+                      lever * std::polar(1.0, from.heading);
+    const Point seen = way * std::polar(1.0, -from.heading - yaw);
+    return {seen.real() - one.value[0], seen.imag() - one.value[1],
+            std::remainder(to.heading - from.heading - one.value[2], 2.0 * M_PI), 0.0};
+  }
+
   [[nodiscard]] Vector4 view(const Measurement& one, Channel channel, double g) const {
+    if (one.kind == &kinds::loop) return loop(one, channel, g);
     if (one.kind == &kinds::fix) return fix(one, channel, g);
     if (acts_on_fixes(channel)) g = 0.0;
     const TruePose pose = at(time_of(one.from) - (channel == Channel::delay ? g : 0.0));

@@ -304,6 +304,8 @@ range = "range"
   EXPECT_EQ(recording.sightings[2].landmark, "post");
   EXPECT_EQ(recording.sightings[2].range, 2.5);
   EXPECT_TRUE(std::isnan(recording.sightings[2].bearing));
+  // Markers are seen from the base, nothing says where the antenna sits.
+  EXPECT_EQ(read.model.robot.mounted, Mountings());
 }
 
 /// The first map of names that nobody should choose is a map still.

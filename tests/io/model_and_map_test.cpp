@@ -7,6 +7,7 @@
 #include "trussmap/error.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/model_file.hpp"
+#include "trussmap/simulation.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <cmath>
@@ -60,14 +61,19 @@ const Refused kBadModels[] = {
     {"UnknownTable", "[robto]\n", ":1: key \"robto\" is unknown, expected robot, noise or effect"},
     {"UnknownKey", "[robot]\nbase = 1\n",
      ":2: key \"base\" in [robot] is unknown for drive differential, expected drive, columns, "
-     "wheelbase"},
+     "wheelbase, sensor, antenna, tracked, scanner"},
+    {"YawOfAnAntenna", "[robot.antenna]\nx = 1\nyaw = 0.1\n",
+     ":3: key \"yaw\" in [robot.antenna] is unknown, expected x, y"},
+    {"KeyOfASensor", "[robot.sensor]\nahead = 1\n",
+     ":2: key \"ahead\" in [robot.sensor] is unknown, expected x, y, yaw"},
+    {"PlaceInWords", "[robot]\nscanner = \"front\"\n", ":2: "},
     {"UnknownDrive", "[robot]\ndrive = \"hover\"\n",
      ":2: drive \"hover\" is unknown, expected one of differential, unicycle, skid-steer, "
      "tricycle, "
      "ackermann, omni3, mecanum, wheels"},
     {"KeyOfAnotherDrive", "[robot]\ndrive = \"omni3\"\nwheelbase = 0.3\n",
      ":3: key \"wheelbase\" in [robot] is unknown for drive omni3, expected drive, columns, "
-     "radius"},
+     "radius, sensor, antenna, tracked, scanner"},
     {"LengthOfTricycle", "[robot]\ndrive = \"tricycle\"\n",
      ":1: [robot] has no length, expected one of drive tricycle"},
     {"NegativeLength", "[robot]\ndrive = \"tricycle\"\nlength = -1\n",
@@ -220,6 +226,20 @@ TEST(ModelToml, ReadsBackExactlyWhatItWrote) {
 }
 
 /// Every kind of process, of channels in turn, with numbers of all digits.
+TEST(ModelToml, PlacesOfSensorsComeBackBesideEveryDrive) {
+  for (const DriveKind drive : {DriveKind::differential, DriveKind::wheels, DriveKind::ackermann}) {
+    Model model;
+    model.robot = usual_robot(drive);
+    model.robot.mounted.sensor = Mounting{3.75, -0.1, 0.3};
+    model.robot.mounted.antenna = Mounting{0.1 / 3.0, 0.0, 0.0};
+    model.robot.mounted.scanner = Mounting{0.0, 0.0, -3.1};
+    const ScratchFolder scratch;
+    const Model back = read_model(scratch.write("m.toml", format_model(model)));
+    EXPECT_EQ(back.robot.mounted, model.robot.mounted);
+    EXPECT_FALSE(back.robot.mounted.tracked.has_value());
+  }
+}
+
 TEST(ModelToml, NoiseProcessesComeBackToTheSameBits) {
   const ScratchFolder scratch;
   Model out;

@@ -48,7 +48,8 @@ void draw(TruthRow& row, const Pose& pose, const ViewPattern& view, const Noise&
           NormalDraws& draws);
 void draw(Fix& fix, const Pose& pose, const ViewPattern& view, const Noise& noise,
           NormalDraws& draws);
-void draw(Loop& loop, const Pose& step, const Noise& noise, NormalDraws& draws);
+void draw(Loop& loop, const Pose& robot_step, const ViewPattern& view, const Noise& noise,
+          NormalDraws& draws);
 /// A surveyed place, and heading, drawn anew.
 [[nodiscard]] Vector2 drawn_place(const SurveyPoint& point, const Vector2& place,
                                   const Noise& noise, NormalDraws& draws);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/field_path.hpp"
 #include "io/logs/gathering.hpp"
+#include "io/logs/sensor_frames.hpp"
 
 #include <cmath>
 
@@ -30,6 +31,8 @@ bool status_of(FieldRef message, SeenFix& fix, GatheredLog& to) {
 }  // namespace
 
 void feed_fixes(Gathering& g, const FixMap& fixes) {
+  want_frames(g, "/tf");
+  for (const std::string& base : base_frames(g.map)) g.to.frames.wants(base);
   g.feeds.add({fixes.topic, fixes.file, fixes.line}, [&g, &fixes](const FedMessage& fed) {
     const auto number = [&](const std::string& path) {
       return g.paths.number(path, fixes.line, fed.topic, fed.field);
@@ -55,7 +58,12 @@ void feed_fixes(Gathering& g, const FixMap& fixes) {
     } else {
       return false;
     }
-    if (std::isfinite(fix.x) && std::isfinite(fix.y)) g.to.fixes.push_back(fix);
+    if (!std::isfinite(fix.x) || !std::isfinite(fix.y)) return true;
+    if (g.to.fixes.empty()) {
+      g.to.fix_frame = frame_of(fed.message);
+      g.to.frames.wants(g.to.fix_frame);
+    }
+    g.to.fixes.push_back(fix);
     return true;
   });
 }

@@ -65,6 +65,7 @@ struct GatheredLog {
   std::vector<Signal> yaw_rate;  ///< none or one
   std::vector<SeenLandmark> seen;
   std::vector<SeenFix> fixes;
+  std::string fix_frame;  ///< that their messages say they are of; empty: none
   std::vector<TimedFieldPose> truth;
   FrameTree frames;
   std::size_t wrong_poses = 0;  ///< poses and transforms whose quaternions are none

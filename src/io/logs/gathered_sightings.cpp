@@ -94,6 +94,10 @@ bool take_sighting(Gathering& g, const SightingMap& map, const FedMessage& fed, 
   if (!is_named(*name, map, table, g.to) || !is_measured(seen, map, g.to)) return true;
   seen.landmark = map.prefix + *name;
   if (!map.position.empty() && !take_position(g, map, fed, at, seen)) return false;
+  if (!seen.positioned && !table) {
+    seen.frame = map.sensor.empty() ? frame_of(fed.message) : map.sensor;
+    g.to.frames.wants(seen.frame);
+  }
   g.to.seen.push_back(std::move(seen));
   return true;
 }
@@ -107,7 +111,7 @@ void feed_sightings(Gathering& g, const SightingMap& one) {
     g.to.frames.wants(one.base);
     return;
   }
-  if (!one.position.empty()) {
+  if (!one.position.empty() || !one.range.empty() || !one.bearing.empty()) {
     want_frames(g, one.tf);
     g.to.frames.wants(one.base);
     if (!one.sensor.empty()) g.to.frames.wants(one.sensor);

@@ -4,6 +4,7 @@
 #include "io/logs/calendar.hpp"
 #include "io/logs/gathered_log.hpp"
 #include "io/logs/seen_landmarks.hpp"
+#include "io/logs/sensor_frames.hpp"
 #include "io/logs/tangent_plane.hpp"
 #include "io/logs/wheel_rows.hpp"
 #include "trussmap/error.hpp"
@@ -284,6 +285,8 @@ LogRecording recording_of(const std::vector<fs::path>& paths, const fs::path& ma
   GatheredLog gathered = gather(logs, map);
   LogRecording result;
   result.model = map.model;
+  const MountedByFrames by_frames = mounted_by_frames(map, gathered);
+  result.model.robot.mounted = by_frames.mounted;
   WheelRows rows = wheel_rows(map, gathered);
   const Clock clock(rows.bounds.front());
   result.epoch = clock.text();
@@ -309,6 +312,7 @@ LogRecording recording_of(const std::vector<fs::path>& paths, const fs::path& ma
   }
 
   count_rows(recording, result);
+  for (const std::string& one : by_frames.told) result.counts.push_back({1, one});
   count_left_out(rows, gathered, seen, outside_fixes, result);
   result.warnings = std::move(rows.warnings);
   warn_of_clock(map, gathered, result);

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/calibrated_start.hpp"
+
+#include "calibration/wheel_calibration.hpp"
+#include "criticism/refits.hpp"
+#include "fit/fit_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+constexpr double kFarPlace = 0.3;  // m off: no handbreadth
+constexpr double kFarYaw = 0.2;    // rad
+
+/// g of travel, of turning and of the wheels' difference, as effects that add to each other have
+/// them; a calibration's act one after the other.
+struct DriveFactors {
+  double travel = 0.0, turn = 0.0, difference = 0.0;
+};
+
+DriveFactors factors_of(const Model& calibrated) {
+  DriveFactors result;
+  double radii = 0.0;
+  int wheels = 0;
+  for (const Effect& one : calibrated.effects) {
+    const double g = one.coefficients.empty() ? 0.0 : one.coefficients.front();
+    if (one.channel == Channel::turn) result.turn += g;
+    if (one.channel == Channel::difference) result.difference += g;
+    if (one.channel == Channel::wheels) result.travel += g;
+    if (wheel_of(one.channel)) {
+      radii += g;
+      ++wheels;
+    }
+  }
+  if (wheels > 0) result.travel += radii / wheels;
+  const double turn = (1.0 + result.turn) * (1.0 + result.travel);
+  result.turn = turn - 1.0;
+  result.difference *= turn;
+  return result;
+}
+
+/// How far sensors are from where they are stated to sit, by the channel that says so.
+std::map<Channel, double> places_off(const WheelCalibration& found, const Robot& stated) {
+  std::map<Channel, double> result;
+  const auto add = [&](const std::optional<Calibrated>& value, double was, Channel channel,
+                       double sign = 1.0) {
+    if (value) result[channel] = sign * (value->value - was);
+  };
+  for (const CalibratedMounting& one : found.mountings) {
+    const Mountings& mounted = stated.mounted;
+    if (one.of == "antenna") {
+      const Mounting was = mounted.antenna.value_or(Mounting());
+      add(one.x, was.x, Channel::antenna);
+      add(one.y, was.y, Channel::antenna_left);
+    } else if (one.of == "scanner") {
+      const Mounting was = mounted.scanner.value_or(Mounting());
+      add(one.x, was.x, Channel::scanner);
+      add(one.y, was.y, Channel::scanner_left);
+      add(one.yaw, was.yaw, Channel::scanner_yaw);
+    } else {
+      const bool sensor = one.of == "sensor";
+      const Mounting was = (sensor ? mounted.sensor : mounted.tracked).value_or(Mounting());
+      add(one.x, was.x, Channel::lever);
+      add(one.y, was.y, Channel::lever_left);
+      add(one.yaw, was.yaw, sensor ? Channel::bearing : Channel::truth_heading,
+          sensor ? -1.0 : 1.0);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+bool is_far_place(Channel channel, double g) {
+  using enum Channel;
+  const bool turned = channel == scanner_yaw || channel == bearing || channel == truth_heading;
+  const bool place = channel == lever || channel == lever_left || channel == antenna ||
+                     channel == antenna_left || channel == scanner || channel == scanner_left;
+  return (place && std::abs(g) >= kFarPlace) || (turned && std::abs(g) >= kFarYaw);
+}
+
+CalibratedStart start_of_constants(const std::vector<DrivenRecording>& recordings,
+                                   const ModelFit& given, std::vector<Effect> constants) {
+  WheelCalibrationOptions options;
+  options.problem = fitter_options(given.options).problem;
+  options.noise = false;
+  const auto found = if_possible<WheelCalibration>(
+      [&] { return calibrate_wheels(recordings, given.model, options); });
+  if (!found) return {std::move(constants)};
+  const DriveFactors factors = factors_of(found->model);
+  const double most =
+      std::max({std::abs(factors.travel), std::abs(factors.turn), std::abs(factors.difference)});
+  CalibratedStart result{std::move(constants), true, most >= kGross};
+  const std::map<Channel, double> places = places_off(*found, given.model.robot);
+  for (Effect& one : result.constants) {
+    one.coefficients.assign(one.shape.size(), 0.0);
+    if (one.channel == Channel::travel) one.coefficients = {factors.travel};
+    if (one.channel == Channel::turn) one.coefficients = {factors.turn};
+    if (one.channel == Channel::difference) one.coefficients = {factors.difference};
+    if (const auto place = places.find(one.channel); place != places.end()) {
+      one.coefficients = {place->second};
+      result.far_places = result.far_places || is_far_place(one.channel, place->second);
+    }
+  }
+  return result;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A drive's constants, and where its sensors sit, as a calibration has them: where a fit of them
+// may start from.
+#pragma once
+
+#include "trussmap/fit_model.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+inline constexpr double kGross = 0.05;  ///< of a factor
+
+/// Whether g of this channel says that a sensor sits far from where it is stated to.
+[[nodiscard]] bool is_far_place(Channel channel, double g);
+
+/// The constants as a calibration of the drive has them, where it leads anywhere, as a start.
+struct CalibratedStart {
+  std::vector<Effect> constants;
+  bool found = false;
+  bool gross = false;       ///< one of the drive's factors is
+  bool far_places = false;  ///< a sensor sits far from where it is stated to
+};
+
+/// `constants`: those that are sought, without coefficients; so they stay where nothing was found.
+[[nodiscard]] CalibratedStart start_of_constants(const std::vector<DrivenRecording>& recordings,
+                                                 const ModelFit& given,
+                                                 std::vector<Effect> constants);
+
+}  // namespace trussmap
