@@ -55,8 +55,7 @@ const std::map<std::string, std::set<std::string>> kOnly = {
 };
 
 /// The room that each public header belongs to.
-const std::map<std::string, std::string> kDoors = {{"threads", "parallel"},
-                                                   {"stop", "parallel"},
+const std::map<std::string, std::string> kDoors = {{"running", "parallel"},
                                                    {"error", "geometry"},
                                                    {"gate", "geometry"},
                                                    {"planar", "geometry"},
@@ -78,6 +77,7 @@ const std::map<std::string, std::string> kDoors = {{"threads", "parallel"},
                                                    {"corrected_odometry", "fit"},
                                                    {"fit_model", "fit"},
                                                    {"noise_fit", "fit"},
+                                                   {"monitor", "monitor"},
                                                    {"build_map", "build_map"},
                                                    {"calibrate", "calibration"},
                                                    {"umbmark", "calibration"},
