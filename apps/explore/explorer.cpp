@@ -16,6 +16,8 @@ constexpr double kWheelSpeed = 0.5;
 /// made anew from where the effect began, and loses nothing by it.
 constexpr double kClearlyNamed = 0.98;
 constexpr int kLongestWait = 10;
+/// More are no longer taken in: then it is not one of the effects watched.
+constexpr std::size_t kMostAlarms = 20;
 /// It stops on a landmark as exactly as this, m.
 constexpr double kStop = 0.001;
 
@@ -46,10 +48,9 @@ Explorer::Explorer(World& world, const MapBuilderOptions& options, bool watches)
       options_(options),
       watches_(watches),
       model_(model_of(world.options())),
-      monitor_(model_, {.compass = world.options().compass}),
       start_(look()),
+      monitor_(fresh_monitor()),
       map_(options) {
-  (void)monitor_.arrive(measured_at(start_));
   begin();
 }
 
@@ -81,7 +82,7 @@ Arrival Explorer::drive(int way) {
   legs_.push_back({way, world_.leave_by(way), {}});
   legs_.back().end = look();
   Arrival arrival;
-  if (watches_ && model_fails(legs_.back())) {
+  if (watches_ && model_fails()) {
     begin();
     for (std::size_t leg = 0; leg < legs_.size(); ++leg) arrival = take(leg);
   } else {
@@ -100,8 +101,14 @@ MeasuredEnd Explorer::measured_at(const Stand& stand) {
   return end;
 }
 
-/// The monitor sees the leg; what it finds belongs to the odometry from there on where it began.
-bool Explorer::model_fails(const DrivenLeg& leg) {
+Monitor Explorer::fresh_monitor() const {
+  Monitor monitor(model_, {.compass = world_.options().compass});
+  (void)monitor.arrive(measured_at(start_));
+  return monitor;
+}
+
+/// The monitor sees the leg; whether something is found, of which the name is clear by now.
+bool Explorer::sees_failure(const DrivenLeg& leg) {
   const std::vector<DrivenRow>& rows = leg.driven.rows;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     WheelRow row = row_of(rows[k]);
@@ -109,11 +116,30 @@ bool Explorer::model_fails(const DrivenLeg& leg) {
     (void)monitor_.drive(row);
   }
   const MonitorReport report = monitor_.arrive(measured_at(leg.end));
-  if (!report.alarm) return false;
+  if (!report.alarm || !report.found) return false;
   if (report.found->share < kClearlyNamed && ++unclear_ < kLongestWait) return false;
   unclear_ = 0;
-  alarms_.push_back({report.legs, *report.found});
-  monitor_.take_in();
+  return true;
+}
+
+/// What is found belongs to the odometry from there on where it began: the monitor sees all legs
+/// anew, and may find more.
+bool Explorer::model_fails() {
+  if (!sees_failure(legs_.back())) return false;
+  for (bool fails = true; fails;) {
+    const FoundEffect found = *monitor_.report().found;
+    alarms_.push_back({static_cast<long>(legs_.size()), found});
+    fails = false;
+    monitor_ = fresh_monitor();
+    for (std::size_t leg = 0; leg < legs_.size() && !fails; ++leg) {
+      for (const Alarm& alarm : alarms_) {
+        if (alarm.found.leg == static_cast<long>(leg) + 1) {
+          monitor_.add(alarm.found.effect, alarm.found.sd);
+        }
+      }
+      fails = sees_failure(legs_[leg]) && alarms_.size() < kMostAlarms;
+    }
+  }
   return true;
 }
 

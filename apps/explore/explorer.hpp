@@ -60,7 +60,9 @@ class Explorer {
   [[nodiscard]] Stand look();
   [[nodiscard]] static MeasuredEnd measured_at(const Stand& stand);
   void begin();
-  [[nodiscard]] bool model_fails(const DrivenLeg& leg);
+  [[nodiscard]] bool sees_failure(const DrivenLeg& leg);
+  [[nodiscard]] bool model_fails();
+  [[nodiscard]] Monitor fresh_monitor() const;
   [[nodiscard]] Motion motion_of(std::size_t leg) const;
   Arrival take(std::size_t leg);
   static constexpr int kUnknown = -1;
@@ -78,10 +80,10 @@ class Explorer {
   MapBuilderOptions options_;
   bool watches_;
   Model model_;  ///< of its odometry, as it was at first
-  Monitor monitor_;
   std::vector<Alarm> alarms_;
   int unclear_ = 0;  ///< legs since an alarm that is not named clearly yet
   Stand start_;
+  Monitor monitor_;
   std::vector<DrivenLeg> legs_;  ///< all of them, to make the map anew
   MapBuilder map_;
   int here_ = -1;         ///< where the robot stands

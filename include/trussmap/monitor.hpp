@@ -140,8 +140,15 @@ class Monitor {
 
   /// The effect that was found belongs to the model from here on, as large as was found; what the
   /// monitor believes is corrected for it, the coefficient stays as uncertain as it is, and the
-  /// watch begins anew. Throws std::logic_error where nothing was found.
+  /// watch begins anew. Throws std::logic_error where nothing was found. Right to first order: who
+  /// has all legs since the effect began, and finds it large, drives them again past a monitor that
+  /// had it from there on (add).
   Effect take_in();
+
+  /// Between legs: this constant effect belongs to the model from here on, its coefficient as
+  /// uncertain as `sd`, and the watch begins anew. Throws std::invalid_argument on an effect that
+  /// is no constant or that the drive does not have, std::logic_error where a leg is under way.
+  void add(const Effect& effect, double sd);
 
   /// The model with what was taken in.
   [[nodiscard]] const Model& model() const;

@@ -330,9 +330,19 @@ void LegFilter::see(const std::string& landmark, const LandmarkOffset& seen,
 void LegFilter::believe(Eigen::Index column, double coefficient, double variance,
                         const NoiseProcess& rest) {
   const Eigen::VectorXd u = U_.col(column);
+  x_ += coefficient * u;
+  add_lasting(u, variance, rest);
+}
+
+void LegFilter::expect(double variance, const NoiseProcess& rest) {
+  add_lasting(Eigen::VectorXd::Zero(states()), variance, rest);
+}
+
+/// An error of this variance, of which one unit has added `u` to what is believed: it stands behind
+/// the other lasting ones.
+void LegFilter::add_lasting(const Eigen::VectorXd& u, double variance, const NoiseProcess& rest) {
   const Eigen::Index size = states() + 1;
   const Eigen::Index tail = states() - lasting_count_;
-  // The coefficient becomes a lasting error behind the others, as unsure as it is.
   Eigen::MatrixXd Q = Eigen::MatrixXd::Zero(size, size);
   Eigen::VectorXd more(size);
   more << u.head(lasting_count_), 1.0, u.tail(tail);
@@ -343,7 +353,6 @@ void LegFilter::believe(Eigen::Index column, double coefficient, double variance
   Q.bottomRightCorner(tail, tail) = P_.bottomRightCorner(tail, tail);
   Q += variance * more * more.transpose();
   Eigen::VectorXd y(size);
-  x_ += coefficient * u;
   y << x_.head(lasting_count_), 0.0, x_.tail(tail);
   x_ = std::move(y);
   P_ = std::move(Q);

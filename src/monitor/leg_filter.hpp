@@ -85,6 +85,8 @@ class LegFilter {
   /// The effect of a column has this coefficient, with this variance: what is believed is moved as
   /// far, and its uncertainty stays as an error that lasts.
   void believe(Eigen::Index column, double coefficient, double variance, const NoiseProcess& rest);
+  /// From here on legs are corrected for an effect, whose coefficient is as unsure as this.
+  void expect(double variance, const NoiseProcess& rest);
 
  private:
   using Block = Eigen::Index;
@@ -103,6 +105,7 @@ class LegFilter {
   }
 
   void go_on(const LegReckoning& leg);
+  void add_lasting(const Eigen::VectorXd& u, double variance, const NoiseProcess& rest);
   void put_point(Eigen::Index at, const Vector2& value, const Matrix2& covariance);
   void forget(Eigen::Index at, Eigen::Index count);
   void move_state(const Eigen::VectorXd& more);

@@ -155,23 +155,46 @@ class __attribute__((visibility("hidden"))) Monitor::State {
     const FoundEffect found = *report_.found;
     const Effect& effect = found.effect;
     const EffectSince since = detector_.likeliest(likeliest_effect());
-    // An error of unknown size that stays: what is left of the effect.
-    const NoiseProcess rest{effect.channel, ProcessKind::per_session, found.sd};
     filter_.believe(static_cast<Eigen::Index>(since.start) * effects() +
                         static_cast<Eigen::Index>(since.effect),
-                    effect.coefficients.front(), found.sd * found.sd, rest);
-    lasting_.push_back(rest);
-    model_.effects.push_back(effect);
+                    effect.coefficients.front(), found.sd * found.sd, rest_of(effect, found.sd));
+    go_on_with(effect, found.sd);
+    return effect;
+  }
+
+  void add(const Effect& effect, double sd) {
+    if (!effect.is_constant() || effect.coefficients.size() != 1 || !(sd >= 0.0)) {
+      refuse_monitor("\"" + effect.name + "\" has to be a constant with one coefficient");
+    }
+    if (leg_.duration() > 0.0) throw std::logic_error("monitor: a leg is under way");
+    odometry_.set_effects(with(effect));  // throws where the drive has no such effect
+    filter_.expect(sd * sd, rest_of(effect, sd));
+    go_on_with(effect, sd);
+  }
+
+ private:
+  [[nodiscard]] std::vector<Effect> with(const Effect& effect) const {
+    std::vector<Effect> all = model_.effects;
+    all.push_back(effect);
+    return all;
+  }
+
+  /// What is left of an effect: an error of unknown size that stays.
+  [[nodiscard]] static NoiseProcess rest_of(const Effect& effect, double sd) {
+    return {effect.channel, ProcessKind::per_session, sd};
+  }
+
+  void go_on_with(const Effect& effect, double sd) {
+    lasting_.push_back(rest_of(effect, sd));
+    model_.effects = with(effect);
     odometry_.set_effects(model_.effects);
     leg_ = LegOdometry(channels_followed(options_.effects, lasting_));
     detector_.clear();
     report_.evidence = 0.0;
     report_.alarm = false;
     report_.found.reset();
-    return effect;
   }
 
- private:
   [[nodiscard]] Eigen::Index effects() const {
     return static_cast<Eigen::Index>(options_.effects.size());
   }
@@ -224,8 +247,13 @@ class __attribute__((visibility("hidden"))) Monitor::State {
 
   void conclude() {
     report_.evidence = detector_.evidence();
-    report_.alarm = report_.alarm || report_.evidence >= 1.0;
     if (detector_.starts() == 0) return;
+    find();
+    // An alarm has a name.
+    report_.alarm = report_.alarm || (report_.evidence >= 1.0 && report_.found);
+  }
+
+  void find() {
     shares_ = detector_.shares();
     const EffectSince since = detector_.likeliest(likeliest_effect());
     report_.found.reset();
@@ -287,6 +315,9 @@ const MonitorReport& Monitor::report() const {
 }
 Effect Monitor::take_in() {
   return state_->take_in();
+}
+void Monitor::add(const Effect& effect, double sd) {
+  state_->add(effect, sd);
 }
 const Model& Monitor::model() const {
   return state_->model();
