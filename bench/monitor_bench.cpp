@@ -148,7 +148,7 @@ Announced announced(const World& world, const WatchedEffect& watched, double g,
   if (!seen.alarm) return result;
   result.false_alarm = seen.alarm_t <= begins;
   result.at_all = !result.false_alarm;
-  const FoundEffect& found = *seen.last.found;  // 100 legs after it began
+  const FoundEffect& found = *seen.found;  // 50 legs after the alarm, or 100 after it began
   result.name = found.effect.name;
   result.at_once = seen.alarm->found->effect.name == watched.name;
   result.named = found.effect.name == watched.name;

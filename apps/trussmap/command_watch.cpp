@@ -67,7 +67,7 @@ ordered_json json_of(const Watch& result, double rate) {
                      {"found", found_json(*result.alarm->found)}};
     json["since_t"] = result.since_t;
   }
-  if (result.last.found) json["found"] = found_json(*result.last.found);
+  if (result.found) json["found"] = found_json(*result.found);
   json["passed_over"] = result.passed_over;
   json["each_leg"] = std::move(legs);
   return json;

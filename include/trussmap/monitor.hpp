@@ -28,8 +28,8 @@
 // k: E exp(l psi(w)) <= exp(l^2 k^2/2). Tails do not spoil that, noise that lasts does where the
 // model does not state it (Noise::processes), and so does white noise larger than k times what it
 // states: estimate it before (fit_model, `trussmap fit --noise`). docs/mathematics.md has the
-// proof, which is of first order in the errors of a leg; measured (bench/README.md) are a tenth of
-// the false alarms that are asked for.
+// proof, which is of first order in the errors of a leg; measured (bench/README.md) are a fifth of
+// the false alarms that are asked for, and as many at most whatever the noise.
 //
 // Evidence is that of the last 200 legs: what they do not show is not announced.
 //
@@ -170,9 +170,12 @@ struct Watch {
   std::vector<WatchedLeg> legs;
   double alarm_t = kAbsent;            ///< s; NaN: none
   std::optional<MonitorReport> alarm;  ///< as it was given
-  MonitorReport last;                  ///< after all legs
-  double since_t = kAbsent;            ///< s, where the first leg with the effect begins
-  int passed_over = 0;                 ///< sightings by a range or a bearing alone
+  /// What it is, 50 legs after the alarm or at the end: by then the evidence has settled, and the
+  /// beginning is not yet beyond what it reaches back.
+  std::optional<FoundEffect> found;
+  MonitorReport last;        ///< after all legs
+  double since_t = kAbsent;  ///< s, where the first leg with the effect begins
+  int passed_over = 0;       ///< sightings by a range or a bearing alone
 };
 
 /// A recording leg by leg, as the robot would have had it. Legs end at sightings that are

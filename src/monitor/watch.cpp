@@ -16,6 +16,9 @@ namespace {
 /// Instants nearer to each other are one, s.
 constexpr double kSameInstant = 1e-9;
 
+/// Legs after an alarm, by which what it is has settled.
+constexpr long kSettled = 50;
+
 /// Where legs may end, in order of time.
 struct PossibleEnd {
   double t = 0.0;
@@ -147,13 +150,15 @@ Watch watch(const DrivenRecording& recording, const Model& model, const WatchOpt
     begun = true;
     if (report.legs == 0) continue;  // where it starts
     result.legs.push_back({report.legs, end.t, end.landmark, report.evidence});
-    if (!report.alarm || result.alarm) continue;
-    result.alarm = report;
-    result.alarm_t = end.t;
+    if (report.alarm && !result.alarm) {
+      result.alarm = report;
+      result.alarm_t = end.t;
+    }
+    if (result.alarm && report.legs <= result.alarm->legs + kSettled) result.found = report.found;
   }
   result.last = monitor.report();
-  if (result.alarm && result.last.found) {
-    const long leg = result.last.found->leg;
+  if (result.found) {
+    const long leg = result.found->leg;
     result.since_t = leg < 2 ? drive.start() : result.legs[static_cast<std::size_t>(leg - 2)].t;
   }
   return result;

@@ -40,7 +40,7 @@ std::string watch_text(const Watch& result, double rate, TextStyle style) {
                         style) +
            "\n";
   }
-  const FoundEffect& found = last.found ? *last.found : *result.alarm->found;
+  const FoundEffect& found = result.found ? *result.found : *result.alarm->found;
   std::string text = verdict_text(Mood::bad,
                                   fmt::format("model ceased to hold: {}, since t = {:.1f} s",
                                               name_in_words(found.effect), result.since_t),
