@@ -8,7 +8,7 @@
 #include "trussmap/diagnose.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
-#include "trussmap/threads.hpp"
+#include "trussmap/running.hpp"
 
 #include <algorithm>
 #include <array>

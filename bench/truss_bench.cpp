@@ -23,7 +23,7 @@
 #include "linalg/band_cholesky.hpp"
 #include "linalg/block_system.hpp"
 #include "truss/truss_system.hpp"
-#include "trussmap/threads.hpp"
+#include "trussmap/running.hpp"
 
 #include <algorithm>
 #include <cmath>

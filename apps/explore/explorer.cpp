@@ -3,14 +3,66 @@
 #include "explorer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace trussmap::explore {
 
-Explorer::Explorer(World& world, const MapBuilderOptions& options) : world_(world), map_(options) {
-  map_.start(world_.landmark());
+namespace {
+
+/// How fast the wheels go, m/s: all that says how long a row lasts.
+constexpr double kWheelSpeed = 0.5;
+/// An alarm waits until one effect has this share of the evidence, so many legs at most: the map is
+/// made anew from where the effect began, and loses nothing by it.
+constexpr double kClearlyNamed = 0.98;
+constexpr int kLongestWait = 10;
+/// More are no longer taken in: then it is not one of the effects watched.
+constexpr std::size_t kMostAlarms = 20;
+/// It stops on a landmark as exactly as this, m.
+constexpr double kStop = 0.001;
+
+Model model_of(const WorldOptions& world) {
+  Model model;
+  model.robot.wheelbase = world.wheelbase;
+  model.noise.left = model.noise.right = world.wheels;
+  model.noise.compass = world.compass_sd;
+  model.noise.sighting = kStop;
+  model.noise.range = world.range_sd;
+  model.noise.bearing = world.bearing_sd;
+  return model;
+}
+
+WheelRow row_of(const DrivenRow& driven) {
+  WheelRow row;
+  row.left = driven.left;
+  row.right = driven.right;
+  const double way = std::max(std::abs(driven.left), std::abs(driven.right));
+  row.duration = std::max(way / kWheelSpeed, 1e-3);
+  return row;
+}
+
+}  // namespace
+
+Explorer::Explorer(World& world, const MapBuilderOptions& options, bool watches)
+    : world_(world),
+      options_(options),
+      watches_(watches),
+      model_(model_of(world.options())),
+      start_(look()),
+      monitor_(fresh_monitor()),
+      map_(options) {
+  begin();
+}
+
+/// An empty map, from where the robot started.
+void Explorer::begin() {
+  map_ = MapBuilder(options_);
+  driven_ = LandmarkGraph();
+  ways_out_.clear();
+  way_ = 0.0;
+  map_.start(start_.landmark);
   here_ = map_.here();
-  stand_here();
+  stand_at(start_);
 }
 
 void Explorer::explore(double way, const std::function<void(const Arrival&)>& arrived) {
@@ -26,43 +78,122 @@ void Explorer::explore(double way, const std::function<void(const Arrival&)>& ar
   follow(path(driven_, here_, 0, PathBy::uncertainty));
 }
 
-/// From wheels to map: rows are composed, with their covariance, and handed on as they are. Where
-/// the map leaves the arrival out, the robot stands there all the same.
 Arrival Explorer::drive(int way) {
-  const int from = here_;
-  const Driven driven = world_.leave_by(way);
-  const double k = world_.options().wheels;
-  Motion motion;
-  for (const DrivenRow& row : driven.rows) {
-    motion = then(motion, arc_motion({row.left, row.right}, world_.options().wheelbase, {k, k}));
+  legs_.push_back({way, world_.leave_by(way), {}});
+  legs_.back().end = look();
+  Arrival arrival;
+  if (watches_ && model_fails()) {
+    begin();
+    for (std::size_t leg = 0; leg < legs_.size(); ++leg) arrival = take(leg);
+  } else {
+    arrival = take(legs_.size() - 1);
   }
-  Arrival arrival = map_.arrive(driven.landmark, motion);
-  way_ += motion.displacement.position().norm();
-  here_ = arrival.landmark;
-  stand_here();
-  const int to = here_;
-  ways_out_[from][static_cast<std::size_t>(way)] = to;
-  ways_out_[to][static_cast<std::size_t>(driven.way_back)] = from;
-  const std::optional<Route> route = map_.route_between(from, to);
-  const Matrix2 covariance = route ? route->covariance : motion.covariance.topLeftCorner<2, 2>();
-  driven_.add_traversal(from, to, {map_.position(to) - map_.position(from), covariance});
   if (arrived_) arrived_(arrival);
   return arrival;
 }
 
-/// What can be read and seen where the robot stands.
-void Explorer::stand_here() {
-  const WorldOptions& robot = world_.options();
-  note(world_.landmark());
-  if (const std::optional<double> reading = world_.read_compass()) {
-    map_.compass(*reading, robot.compass_sd);
+MeasuredEnd Explorer::measured_at(const Stand& stand) {
+  MeasuredEnd end;
+  end.sightings.push_back({0.0, stand.landmark});
+  for (const Seen& seen : stand.seen) {
+    end.sightings.push_back({0.0, seen.landmark, seen.range, seen.bearing});
   }
-  for (const Seen& seen : world_.look_round()) {
+  return end;
+}
+
+Monitor Explorer::fresh_monitor() const {
+  Monitor monitor(model_, {.compass = world_.options().compass});
+  (void)monitor.arrive(measured_at(start_));
+  return monitor;
+}
+
+/// The monitor sees the leg; whether something is found, of which the name is clear by now.
+bool Explorer::sees_failure(const DrivenLeg& leg) {
+  const std::vector<DrivenRow>& rows = leg.driven.rows;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    WheelRow row = row_of(rows[k]);
+    if (k + 1 == rows.size() && leg.end.compass) row.compass = *leg.end.compass;
+    (void)monitor_.drive(row);
+  }
+  const MonitorReport report = monitor_.arrive(measured_at(leg.end));
+  if (!report.alarm || !report.found) return false;
+  if (report.found->share < kClearlyNamed && ++unclear_ < kLongestWait) return false;
+  unclear_ = 0;
+  return true;
+}
+
+/// What is found belongs to the odometry from there on where it began: the monitor sees all legs
+/// anew, and may find more.
+bool Explorer::model_fails() {
+  if (!sees_failure(legs_.back())) return false;
+  for (bool fails = true; fails;) {
+    const FoundEffect found = *monitor_.report().found;
+    alarms_.push_back({static_cast<long>(legs_.size()), found});
+    fails = false;
+    monitor_ = fresh_monitor();
+    for (std::size_t leg = 0; leg < legs_.size() && !fails; ++leg) {
+      for (const Alarm& alarm : alarms_) {
+        if (alarm.found.leg == static_cast<long>(leg) + 1) {
+          monitor_.add(alarm.found.effect, alarm.found.sd);
+        }
+      }
+      fails = sees_failure(legs_[leg]) && alarms_.size() < kMostAlarms;
+    }
+  }
+  return true;
+}
+
+/// Rows are composed, with their covariance, by the model as it was for this leg.
+Motion Explorer::motion_of(std::size_t leg) const {
+  Model model = model_;
+  for (const Alarm& alarm : alarms_) {
+    const bool since = static_cast<long>(leg) + 1 >= alarm.found.leg;
+    if (since) model.effects.push_back(alarm.found.effect);
+  }
+  CorrectedOdometry odometry(model);
+  Motion motion;
+  for (const DrivenRow& row : legs_[leg].driven.rows) {
+    motion = then(motion, odometry.drive(row_of(row)).motion);
+  }
+  return motion;
+}
+
+/// From wheels to map: the motion is handed on as it is. Where the map leaves the arrival out, the
+/// robot stands there all the same.
+Arrival Explorer::take(std::size_t number) {
+  const DrivenLeg& leg = legs_[number];
+  const int from = here_;
+  const Motion motion = motion_of(number);
+  Arrival arrival = map_.arrive(leg.driven.landmark, motion);
+  way_ += motion.displacement.position().norm();
+  here_ = arrival.landmark;
+  stand_at(leg.end);
+  const int to = here_;
+  ways_out_[from][static_cast<std::size_t>(leg.way)] = to;
+  ways_out_[to][static_cast<std::size_t>(leg.driven.way_back)] = from;
+  const std::optional<Route> route = map_.route_between(from, to);
+  const Matrix2 covariance = route ? route->covariance : motion.covariance.topLeftCorner<2, 2>();
+  driven_.add_traversal(from, to, {map_.position(to) - map_.position(from), covariance});
+  return arrival;
+}
+
+Explorer::Stand Explorer::look() {
+  Stand stand{world_.landmark(), world_.ways_out(), world_.read_compass(), {}};
+  stand.seen = world_.look_round();
+  return stand;
+}
+
+/// What was read and seen goes into the map.
+void Explorer::stand_at(const Stand& stand) {
+  const WorldOptions& robot = world_.options();
+  note(stand.landmark);
+  if (stand.compass) map_.compass(*stand.compass, robot.compass_sd);
+  for (const Seen& seen : stand.seen) {
     map_.observe(seen.landmark,
                  seen_at(seen.range, seen.bearing, robot.range_sd, robot.bearing_sd));
     note(seen.landmark);
   }
-  ways_out_[here_].resize(world_.ways_out(), kUnknown);
+  ways_out_[here_].resize(stand.ways_out, kUnknown);
 }
 
 void Explorer::note(const std::string& landmark) {

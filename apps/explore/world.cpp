@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <boost/pending/disjoint_sets.hpp>
 
@@ -47,6 +48,9 @@ World::World(const WorldOptions& options)
   if (!(options.walls >= 0.0 && options.walls < 1.0) || !(options.wheels > 0.0) ||
       !(options.wheelbase > 0.0) || !(options.reach >= 0.0)) {
     throw std::invalid_argument("a world's sizes and noise are above 0, its walls a share below 1");
+  }
+  if (!(options.air_loss >= 0.0 && options.air_loss < 1.0)) {
+    throw std::invalid_argument("a tyre loses a share of its radius below 1");
   }
   const Mesh mesh = drawn_mesh(options, random_);
   for (int k = 0; k < mesh.landmarks(); ++k) {
@@ -92,7 +96,12 @@ Driven World::leave_by(int way) {
   way_ += along.norm();
   here_ = to;
   const std::vector<int>& back = plan_.routes_at(to);
-  return {drive_route(turn, along.norm(), options_.wheelbase, options_.wheels, random_), landmark(),
+  std::vector<DrivenRow> rows =
+      drive_route(turn, along.norm(), options_.wheelbase, options_.wheels, random_);
+  if (legs_++ >= options_.air_loss_leg) {  // a smaller wheel turns more often
+    for (DrivenRow& row : rows) row.left /= 1.0 - options_.air_loss;
+  }
+  return {std::move(rows), landmark(),
           static_cast<int>(std::find(back.begin(), back.end(), route) - back.begin())};
 }
 

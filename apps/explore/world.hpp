@@ -32,6 +32,9 @@ struct WorldOptions {
   double reach = 0.0;        ///< m, of the range sensor; 0: there is none
   double range_sd = 0.05;    ///< m
   double bearing_sd = 0.02;  ///< rad
+  /// The left tyre loses air: its wheel is smaller by this share after so many legs.
+  double air_loss = 0.0;
+  int air_loss_leg = 0;
   std::uint64_t seed = 1;
 };
 
@@ -76,6 +79,7 @@ class World {
   int here_ = 0;
   double heading_ = 0.0;  // rad, true
   double way_ = 0.0;      // m
+  int legs_ = 0;
 };
 
 }  // namespace trussmap::explore

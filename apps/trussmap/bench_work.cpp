@@ -5,7 +5,7 @@
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
-#include "trussmap/stop.hpp"
+#include "trussmap/running.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>

@@ -9,6 +9,7 @@
 #include "scope_options.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/survey_comparison.hpp"
+#include "trussmap/wording.hpp"
 #include "trussmap/write_files.hpp"
 #include "world.hpp"
 
@@ -29,6 +30,7 @@ struct ExploreOptions {
   std::string mesh = "8x8";
   explore::WorldOptions world;
   bool no_compass = false;
+  bool no_monitor = false;
   double tours = 3.0;
   ScopeOptions scope;
   std::string json_file;
@@ -57,6 +59,28 @@ ordered_json tours_json(const std::vector<Tour>& tours) {
                     {"aligned_error_m", tour.aligned.position.value_or(0.0)}});
   }
   return list;
+}
+
+ordered_json alarms_json(const std::vector<explore::Alarm>& alarms) {
+  ordered_json list = ordered_json::array();
+  for (const explore::Alarm& alarm : alarms) {
+    const Effect& effect = alarm.found.effect;
+    list.push_back({{"leg", alarm.legs},
+                    {"since_leg", alarm.found.leg},
+                    {"effect", effect.name},
+                    {"channel", name_of(effect.channel)},
+                    {"shape", texts_of(effect.shape)},
+                    {"coefficients", effect.coefficients},
+                    {"sd", std::vector<double>{alarm.found.sd}}});
+  }
+  return list;
+}
+
+void print_alarms(const std::vector<explore::Alarm>& alarms) {
+  for (const explore::Alarm& alarm : alarms) {
+    fmt::print("after {} legs: {}, since leg {}; the map was made anew with that\n", alarm.legs,
+               in_words(alarm.found.effect, {alarm.found.sd}), alarm.found.leg);
+  }
 }
 
 void print_tours(const std::vector<Tour>& tours, Laid laid) {
@@ -89,7 +113,7 @@ void run_explore(ExploreOptions options) {
   MapBuilderOptions how;
   how.scope = options.scope.scope();
   how.law = options.scope.stiffness_law();
-  explore::Explorer robot(world, how);
+  explore::Explorer robot(world, how, !options.no_monitor);
   const LandmarkPositions truth = positions_of(world.plan());
   const Laid laid = options.world.compass ? Laid::as_it_is : Laid::aligned;
   const double all_routes = world.length_of_all_routes();
@@ -122,6 +146,7 @@ void run_explore(ExploreOptions options) {
                                  {"found", map.landmarks()},
                                  {"routes", map.routes()},
                                  {"aligned", laid == Laid::aligned},
+                                 {"alarms", alarms_json(robot.alarms())},
                                  {"tours", tours_json(tours)}};
     files.emplace_back(options.json_file, result.dump(2) + "\n");
   }
@@ -135,6 +160,7 @@ void run_explore(ExploreOptions options) {
   files.write();
   fmt::print("explored: {} of {} landmarks and {} routes, {} legs, {:.0f} m\n", map.landmarks(),
              world.plan().landmarks(), map.routes(), legs, world.way_driven());
+  print_alarms(robot.alarms());
   print_tours(tours, laid);
 }
 
@@ -186,6 +212,18 @@ void setup_explore(const Command& app) {
           "something is still unknown")
       .check(zero_or_more())
       .capture_default_str();
+  command
+      .add_option("--air-loss", options->world.air_loss,
+                  "Share of its radius that the left tyre loses on the way")
+      .check(between(0.0, 0.5))
+      .capture_default_str();
+  command
+      .add_option("--air-loss-leg", options->world.air_loss_leg,
+                  "Legs that it has driven when the tyre loses air")
+      .check(whole_number(0))
+      .capture_default_str();
+  command.add_flag("--no-monitor", options->no_monitor,
+                   "The robot does not watch whether the model of its wheels still holds");
   command.add_option("--seed", options->world.seed, "Draws the world and the noise")
       .check(whole_number(0))
       .capture_default_str();

@@ -35,5 +35,6 @@ void setup_simulate(const Command& app);
 void setup_tape(const Command& app);
 void setup_tour(const Command& app);
 void setup_umbmark(const Command& app);
+void setup_watch(const Command& app);
 
 }  // namespace trussmap::app

@@ -133,6 +133,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_tape(commands);
   trussmap::app::setup_tour(commands);
   trussmap::app::setup_umbmark(commands);
+  trussmap::app::setup_watch(commands);
   trussmap::app::add_read_limits(app);
   trussmap::app::add_threads_option(app);
   trussmap::app::finish_help(app);

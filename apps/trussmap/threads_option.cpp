@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "threads_option.hpp"
 
-#include "trussmap/threads.hpp"
+#include "trussmap/running.hpp"
 
 #include <algorithm>
 #include <array>

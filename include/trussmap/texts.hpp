@@ -16,6 +16,7 @@
 #include "trussmap/compare.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/discover.hpp"
+#include "trussmap/monitor.hpp"
 #include "trussmap/noise_fit.hpp"
 #include "trussmap/pose_graph.hpp"
 #include "trussmap/simulated_recording.hpp"
@@ -86,6 +87,11 @@ enum class Mood { good, doubt, bad };
                                              TextStyle style = TextStyle::plain);
 /// A line per finding and below it the remedy; or that there is none.
 [[nodiscard]] std::string check_text(const std::vector<CheckFinding>& findings,
+                                     TextStyle style = TextStyle::plain);
+
+/// Whether the model held, and if not what ceased to, since when, and what looks the same. `rate`:
+/// false alarms per hour that the monitor was asked for.
+[[nodiscard]] std::string watch_text(const Watch& result, double rate,
                                      TextStyle style = TextStyle::plain);
 
 /// A line per coefficient, under a heading.

@@ -5,8 +5,8 @@
 //
 // Five targets to link. trussmap::map has what stands in arc, build_map, channel,
 // corrected_odometry, dead_reckoning, error, fit_model, gate, landmark_map, map_builder, model,
-// noise_fit, planar, pose_graph, recording, robot, stop, survey_comparison, test_path, threads and
-// truss; trussmap::store map_store and the store of fleet, too. log_files takes trussmap::logs,
+// monitor, noise_fit, planar, pose_graph, recording, robot, running, survey_comparison, test_path
+// and truss; trussmap::store map_store and the store of fleet, too. log_files takes trussmap::logs,
 // distributed trussmap::distributed. All the others, and effects in a model (a shape is read from
 // its text), take trussmap::trussmap. All include trussmap::map, and trussmap::logs
 // trussmap::trussmap. Find the first alone by find_package(trussmap COMPONENTS map).
@@ -41,6 +41,7 @@
 #include "trussmap/map_store.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/model_file.hpp"
+#include "trussmap/monitor.hpp"
 #include "trussmap/noise_fit.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/planar.hpp"
@@ -49,15 +50,14 @@
 #include "trussmap/recording.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/robot.hpp"
+#include "trussmap/running.hpp"
 #include "trussmap/shape.hpp"
 #include "trussmap/simulated_recording.hpp"
 #include "trussmap/simulation.hpp"
-#include "trussmap/stop.hpp"
 #include "trussmap/survey_comparison.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/test_path.hpp"
 #include "trussmap/texts.hpp"
-#include "trussmap/threads.hpp"
 #include "trussmap/tour_experiment.hpp"
 #include "trussmap/truss.hpp"
 #include "trussmap/umbmark.hpp"

@@ -4,7 +4,7 @@
 // Long calls of the library: the interpreter is unlocked, Ctrl-C stops them, progress is told.
 #pragma once
 
-#include "trussmap/stop.hpp"
+#include "trussmap/running.hpp"
 
 #include <cstddef>
 #include <pybind11/pybind11.h>

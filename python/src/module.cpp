@@ -3,7 +3,7 @@
 //
 // The module trussmap._core; trussmap/__init__.py gives its names out.
 #include "parts.hpp"
-#include "trussmap/threads.hpp"
+#include "trussmap/running.hpp"
 
 #include <string>
 

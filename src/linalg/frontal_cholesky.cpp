@@ -5,7 +5,7 @@
 #include "geometry/index.hpp"
 #include "linalg/front_kernels.hpp"
 #include "parallel/parallel_for.hpp"
-#include "trussmap/threads.hpp"
+#include "trussmap/running.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -17,7 +17,7 @@
 // and Z_22 is found in the parent's front (Takahashi, Fagan & Chin, 1973; by fronts: Campbell &
 // Davis, "Computing the sparse inverse subset: an inverse multifrontal approach", 1995).
 //
-// Subtrees and the tiles of large fronts are worked on by several threads (trussmap/threads.hpp);
+// Subtrees and the tiles of large fronts are worked on by several threads (trussmap/running.hpp);
 // each number comes from the same operations in the same order, whoever does them.
 //
 // Memory: L, and the updates that wait for their parents.

@@ -26,7 +26,7 @@
 #pragma once
 
 #include "linalg/sparse_cholesky.hpp"
-#include "trussmap/stop.hpp"
+#include "trussmap/running.hpp"
 
 #include <algorithm>
 #include <concepts>

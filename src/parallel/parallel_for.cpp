@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "parallel/parallel_for.hpp"
 
-#include "trussmap/stop.hpp"
-#include "trussmap/threads.hpp"
+#include "trussmap/running.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Loops whose turns do not depend on each other, on the threads of trussmap/threads.hpp.
+// Loops whose turns do not depend on each other, on the threads of trussmap/running.hpp.
 //
 // What a turn computes must not depend on which thread runs it, nor when: then the figures do not
 // depend on the number of threads either. Sums over turns are to be taken afterwards, in order.

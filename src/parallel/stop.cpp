@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/stop.hpp"
+#include "trussmap/running.hpp"
 
 #include <chrono>
 #include <utility>

@@ -28,7 +28,7 @@ using testing::ScratchFolder;
 
 const std::vector<std::string> kCommands = {
     "add", "adjust", "build", "calibrate", "compare",  "convert", "diagnose", "discover", "effects",
-    "fit", "merge",  "noise", "reveal",    "simulate", "tape",    "tour",     "umbmark"};
+    "fit", "merge",  "noise", "reveal",    "simulate", "tape",    "tour",     "umbmark",  "watch"};
 
 TEST(Command, HelpIsThereForEveryCommand) {
   const std::string all = run_trussmap("--help").output;
@@ -325,7 +325,7 @@ TEST(Command, AWordThatIsNoCommandIsNamed) {
             "compare, completion, convert, diagnose, discover, effects, explore, fit, fleet, "
             "manual, merge, "
             "noise, "
-            "reveal, serve, simulate, tape, tour, umbmark\n");
+            "reveal, serve, simulate, tape, tour, umbmark, watch\n");
 }
 
 TEST(Command, ASessionGivenTwiceIsRefused) {

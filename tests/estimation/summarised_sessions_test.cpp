@@ -5,8 +5,8 @@
 #include "estimation/recording_adjustment.hpp"
 #include "estimation/summarised_days.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/running.hpp"
 #include "trussmap/simulation.hpp"
-#include "trussmap/threads.hpp"
 
 #include <algorithm>
 #include <cmath>

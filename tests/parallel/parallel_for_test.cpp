@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "parallel/parallel_for.hpp"
 
-#include "trussmap/threads.hpp"
+#include "trussmap/running.hpp"
 
 #include <atomic>
 #include <stdexcept>

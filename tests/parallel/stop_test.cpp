@@ -1,9 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/stop.hpp"
-
 #include "parallel/parallel_for.hpp"
-#include "trussmap/threads.hpp"
+#include "trussmap/running.hpp"
 
 #include <atomic>
 #include <cstddef>

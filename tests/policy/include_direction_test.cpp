@@ -55,8 +55,7 @@ const std::map<std::string, std::set<std::string>> kOnly = {
 };
 
 /// The room that each public header belongs to.
-const std::map<std::string, std::string> kDoors = {{"threads", "parallel"},
-                                                   {"stop", "parallel"},
+const std::map<std::string, std::string> kDoors = {{"running", "parallel"},
                                                    {"error", "geometry"},
                                                    {"gate", "geometry"},
                                                    {"planar", "geometry"},
@@ -78,6 +77,7 @@ const std::map<std::string, std::string> kDoors = {{"threads", "parallel"},
                                                    {"corrected_odometry", "fit"},
                                                    {"fit_model", "fit"},
                                                    {"noise_fit", "fit"},
+                                                   {"monitor", "monitor"},
                                                    {"build_map", "build_map"},
                                                    {"calibrate", "calibration"},
                                                    {"umbmark", "calibration"},
@@ -112,10 +112,10 @@ constexpr const char* kUmbrella = "trussmap";
 /// Files outside of src/ that include private headers: benches that look into a fit. A file that
 /// has come clean must be struck off.
 const std::set<std::string> kNotYetClean = {
-    "bench/bench_worlds.cpp",           "bench/bench_worlds.hpp",    "bench/criticism_bench.cpp",
-    "bench/criticism_parts.cpp",        "bench/noise_bench.cpp",     "bench/scale/ceres_rivals.cpp",
-    "bench/scale/covariances_part.cpp", "bench/scale/grid_part.cpp", "bench/scale/online_part.cpp",
-    "bench/threads_bench.cpp",          "bench/truss_bench.cpp"};
+    "bench/bench_worlds.cpp",       "bench/bench_worlds.hpp",           "bench/criticism_bench.cpp",
+    "bench/criticism_parts.cpp",    "bench/monitor_bench.cpp",          "bench/noise_bench.cpp",
+    "bench/scale/ceres_rivals.cpp", "bench/scale/covariances_part.cpp", "bench/scale/grid_part.cpp",
+    "bench/scale/online_part.cpp",  "bench/threads_bench.cpp",          "bench/truss_bench.cpp"};
 
 struct Include {
   int line = 0;

@@ -5,8 +5,7 @@
 // throws comes through the library as it is.
 #include "trussmap/error.hpp"
 #include "trussmap/map_store.hpp"
-#include "trussmap/stop.hpp"
-#include "trussmap/threads.hpp"
+#include "trussmap/running.hpp"
 #include "trussmap/truss.hpp"
 #include "trussmap/write_files.hpp"
 

@@ -19,7 +19,7 @@
 #include "trussmap/map_store.hpp"
 #include "trussmap/pose_graph.hpp"
 #include "trussmap/recording_files.hpp"
-#include "trussmap/threads.hpp"
+#include "trussmap/running.hpp"
 #include "trussmap/tour_experiment.hpp"
 #include "trussmap/write_files.hpp"
 

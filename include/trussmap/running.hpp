@@ -1,7 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Stopping a call that takes long, from outside: a key that was pressed, a window that was closed.
+// How calls run: on how many threads, and stopped from outside where they take long.
+//
+// Threads. The figures are the same, to the last digit, whatever their number. A BLAS that starts
+// threads of its own would compete with these; OpenBLAS is told by OPENBLAS_NUM_THREADS=1 or
+// openblas_set_num_threads(1).
+//
+// Stopping: a key that was pressed, a window that was closed.
 //
 //   const StopQuestion question([&] { return was_pressed(); });
 //   diagnose(recordings, model);   // throws StoppedOnRequest soon after it was
@@ -14,6 +20,19 @@
 #include <functional>
 
 namespace trussmap {
+
+/// How many threads calls work on from now on; the caller's own counts. 1 until it is set. A call
+/// that comes while another one has the library's threads works on its caller's alone. Throws
+/// std::invalid_argument below 1.
+void set_threads(int threads);
+
+[[nodiscard]] int threads();
+
+/// As many as the machine runs at once, 1 where that is not known.
+[[nodiscard]] int available_threads();
+
+// ----------------------------------------
+// Stopping.
 
 /// What a call throws that was asked to stop. It leaves what it was given as it was.
 class StoppedOnRequest : public std::exception {

@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// One row at hand: what wheels and gyro say of it, as it is read, steered and cleared of effects.
+#pragma once
+
+#include "drive/body_motion.hpp"
+#include "drive/row_motion.hpp"
+#include "drive/wheel_kinematics.hpp"
+#include "effects/channel_physics.hpp"
+#include "odometry/row_reckoner.hpp"
+#include "odometry/wheels_and_gyro.hpp"
+#include "text/number_text.hpp"
+#include "trussmap/corrected_odometry.hpp"
+
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace trussmap {
+
+[[noreturn]] inline void refuse_row(const std::string& why) {
+  throw std::invalid_argument(why);
+}
+
+/// Where travel is a unicycle's one column, the gyro says how it turns, and is no further sensor.
+inline bool turns_by_gyro(const Robot& robot) {
+  return robot.drive == DriveKind::unicycle && robot.columns.size() == 1;
+}
+
+/// What wheels and gyro say of one row.
+class RowAtHand {
+ public:
+  RowAtHand(Robot robot, const Noise& noise, bool gyro)
+      : robot_(std::move(robot)), noise_(noise), gyro_(gyro) {
+    if (!(robot_.wheelbase > 0.0)) refuse_row("the wheelbase must be above 0 m");
+    if (robot_.drive == DriveKind::unicycle && (columns() < 1 || columns() > 2)) {
+      refuse_row(joined("drive unicycle has ", columns(), " columns, expected 1 or 2"));
+    }
+    drive_.left = drive_.right = {0.0};
+    if (robot_.drive == DriveKind::differential || robot_.drive == DriveKind::unicycle) return;
+    kinematics_.emplace(robot_);
+    kinematics_->prepare(drive_, 1);
+  }
+
+  void check(const WheelRow& row) const {
+    if (!std::isfinite(row.duration) || row.duration <= 0.0) {
+      refuse_row("a row lasts " + short_text(row.duration) + " s, expected more than 0");
+    }
+    if (!std::isfinite(row.left) || !std::isfinite(row.right)) {
+      refuse_row("a row's travel is not finite");
+    }
+    if (row.readings.size() != columns()) {
+      refuse_row(joined("a row has readings of ", row.readings.size(), " wheels, expected ",
+                        expected_readings()));
+    }
+    if (columns() > 0 && (row.left != 0.0 || row.right != 0.0)) {
+      refuse_row("a row has travels left and right, expected readings of " + expected_readings());
+    }
+    if (turns_by_gyro(robot_) && std::isnan(row.yaw_rate)) {
+      refuse_row("a row has no yaw rate, expected one: it is how the robot turns");
+    }
+    for (std::size_t k = 0; k < row.readings.size(); ++k) {
+      if (is_possible_reading(row.readings[k])) continue;
+      refuse_row(joined("column ", robot_.columns[k], " reads ", short_text(row.readings[k]),
+                        ", expected a travel in metres or an angle in radians"));
+    }
+  }
+
+  /// The row as it is read, what the gyro adds to it.
+  GyroShare take(const WheelRow& row) {
+    if (!kinematics_) {
+      const WheelTravel shown =
+          columns() > 0 ? unicycle_travel(row) : WheelTravel{row.left, row.right};
+      drive_.left.front() = shown.left;
+      drive_.right.front() = shown.right;
+      return share_of(row);
+    }
+    for (std::size_t k = 0; k < row.readings.size(); ++k) {
+      drive_.wheels[k].reading.front() = row.readings[k];
+    }
+    if (!kinematics_->move(drive_, 0)) {
+      refuse_row("a steering angle of " + short_text(row.readings.back()) +
+                 " rad leaves the measured wheel no way ahead, expected a smaller one");
+    }
+    return share_of(row);
+  }
+
+  /// The same, steered by so many rad more.
+  GyroShare steer(const WheelRow& row, double more) {
+    if (kinematics_ && !kinematics_->move(drive_, 0, more)) {
+      refuse_row(
+          "a steering angle of " + short_text(row.readings.back() + more) +
+          " rad, which the model's steering effects lead to, leaves the measured wheel no way "
+          "ahead");
+    }
+    return share_of(row);
+  }
+
+  /// As wheels and gyro together say.
+  ReckonedRow recorded(const WheelRow& row, const GyroShare& gyro) {
+    ReckonedRow result{together(gyro, robot_), row.duration, 0.0, row.compass};
+    result.sideways = gyro.sideways;
+    if (!drive_.sideways.empty()) result.sideways += gyro.aside * gyro.excess;
+    result.noise = noise_of(result, gyro);
+    return result;
+  }
+
+  /// The row less what is added to it.
+  ReckonedRow cleared(const ReckonedRow& row, const GyroShare& gyro, const DrivePattern& more) {
+    ReckonedRow clear = row;
+    const WheelTravel turned = wheel_travel({0.0, 0.0, more.turn}, robot_);
+    clear.travel = {row.travel.left + more.advance + turned.left,
+                    row.travel.right + more.advance + turned.right};
+    clear.slip = more.slip;
+    clear.noise = noise_of(clear, gyro);
+    return clear;
+  }
+
+  /// As shapes of the rates see it.
+  [[nodiscard]] BodyMotion body(const ReckonedRow& row) const {
+    return body_motion(row.travel, robot_, row.sideways);
+  }
+
+  /// As channels see it.
+  [[nodiscard]] RowMotion shown(const ReckonedRow& row, const GyroShare& gyro) const {
+    RowMotion shown = row_motion(gyro, row.duration, robot_);
+    if (kinematics_) shown.wheels = &drive_.wheels;
+    return shown;
+  }
+
+  [[nodiscard]] Motion motion(const ReckonedRow& row) const {
+    return {displacement_of(body_motion(row.travel, robot_, row.slip + row.sideways)),
+            covariance_of(row, robot_, noise_)};
+  }
+
+  [[nodiscard]] const Robot& robot() const { return robot_; }
+  [[nodiscard]] const Noise& noise() const { return noise_; }
+
+ private:
+  /// Of two wheels none: they are left and right.
+  [[nodiscard]] std::size_t columns() const {
+    return robot_.drive == DriveKind::differential ? 0 : robot_.columns.size();
+  }
+
+  [[nodiscard]] WheelTravel unicycle_travel(const WheelRow& row) const {
+    const double turn = turns_by_gyro(robot_) ? row.yaw_rate * row.duration : row.readings[1];
+    return wheel_travel({row.readings[0], 0.0, turn}, robot_);
+  }
+
+  [[nodiscard]] GyroShare share_of(const WheelRow& row) const {
+    const double beside = turns_by_gyro(robot_) ? kAbsent : row.yaw_rate;
+    return gyro_share(drive_, 0, beside, row.duration, robot_, noise_);
+  }
+
+  /// Nothing of two wheels without a gyro: then that of the wheels.
+  [[nodiscard]] std::optional<ArcNoise> noise_of(const ReckonedRow& row, const GyroShare& gyro) {
+    if (!gyro_ && !kinematics_) return std::nullopt;
+    drive_.left.front() = row.travel.left;
+    drive_.right.front() = row.travel.right;
+    drive_.gyro.clear();
+    if (gyro_) drive_.gyro.push_back(gyro);
+    return row_noise(drive_, 0, 1.0, row.duration, robot_, noise_);
+  }
+
+  [[nodiscard]] std::string expected_readings() const {
+    if (columns() == 0) return "none of two wheels, but left and right";
+    std::string names;
+    for (const std::string& one : robot_.columns) names += (names.empty() ? "" : ", ") + one;
+    return names;
+  }
+
+  Robot robot_;
+  Noise noise_;
+  bool gyro_;
+  std::optional<WheelKinematics> kinematics_;  ///< of other wheels than two
+  MotionRows drive_;                           ///< of this row alone
+};
+
+}  // namespace trussmap

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "monitor/leg_odometry.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+/// What more of way and turn adds to the displacement of an arc, in the frame of its start.
+struct ArcDerivatives {
+  Matrix2 by_way;   ///< ahead and to the left, m
+  Vector2 by_turn;  ///< m/rad
+};
+
+ArcDerivatives arc_derivatives(const BodyMotion& body) {
+  // displacement = [s -c; c s] way, with s = sin a/a and c = (1 - cos a)/a.
+  const double a = body.turn;
+  const bool small = std::abs(a) < 1e-4;
+  const double s = small ? 1.0 - a * a / 6.0 : std::sin(a) / a;
+  const double c = small ? 0.5 * a : (1.0 - std::cos(a)) / a;
+  const double more_s = small ? -a / 3.0 : (std::cos(a) - s) / a;
+  const double more_c = small ? 0.5 - a * a / 8.0 : (std::sin(a) - c) / a;
+  ArcDerivatives result;
+  result.by_way << s, -c, c, s;
+  result.by_turn = {more_s * body.forward - more_c * body.sideways,
+                    more_c * body.forward + more_s * body.sideways};
+  return result;
+}
+
+}  // namespace
+
+LegOdometry::LegOdometry(std::vector<Channel> channels) : channels_(std::move(channels)) {
+  begin();
+}
+
+void LegOdometry::begin() {
+  leg_ = {};
+  leg_.by_channel = LegColumns::Zero(5, static_cast<Eigen::Index>(channels_.size()));
+  sum_of_readings_ = 0.0;
+}
+
+/// Readings are averaged about the first, so that they may be wrapped.
+void LegOdometry::read_compass(double reading) {
+  const double at_start = reading - leg_.displacement.heading;
+  if (leg_.readings++ == 0) first_reading_ = at_start;
+  sum_of_readings_ += wrap_angle(at_start - first_reading_);
+}
+
+void LegOdometry::take(const Motion& motion, const RowMotion& shown, double reading, double excess,
+                       double excess_variance) {
+  const double before = leg_.displacement.heading;
+  const Matrix2 R = rotation(before);
+  const Vector2 step = R * motion.displacement.position();
+  // An error of the heading moves all that comes after it.
+  const auto carry = [&](auto&& errors) {
+    errors.row(0) -= step.y() * errors.row(2);
+    errors.row(1) += step.x() * errors.row(2);
+  };
+  carry(leg_.covariance);
+  carry(leg_.covariance.transpose());
+  carry(leg_.by_channel);
+  Eigen::Matrix<double, 5, 3> G = Eigen::Matrix<double, 5, 3>::Zero();
+  G.topLeftCorner<2, 2>() = R;
+  G(2, 2) = 1.0;
+  leg_.covariance.topLeftCorner<3, 3>() +=
+      G.topRows<3>() * motion.covariance * G.topRows<3>().transpose();
+
+  const ArcDerivatives arc = arc_derivatives(shown.body);
+  for (std::size_t k = 0; k < channels_.size(); ++k) {
+    const DrivePattern more = drive_pattern(channels_[k], 1.0, shown);
+    auto column = leg_.by_channel.col(static_cast<Eigen::Index>(k));
+    column.head<2>() +=
+        R * (arc.by_way * Vector2(more.advance, more.slip) + arc.by_turn * more.turn);
+    column[2] += more.turn;
+    column[kLegExcess] += more.excess;
+  }
+  leg_.displacement = compose(leg_.displacement, motion.displacement);
+  leg_.duration += shown.duration;
+  const double way = std::hypot(shown.body.forward, shown.body.sideways);
+  leg_.way += way;
+  if (way > 0.0 || shown.body.turn != 0.0) ++leg_.rows;
+  if (shown.gyro_reads) {
+    ++leg_.gyro_readings;
+    leg_.excess += excess;
+    leg_.covariance(kLegExcess, kLegExcess) += excess_variance;
+  }
+  if (std::isnan(reading)) return;
+  read_compass(reading);
+  // The mean over the readings is a sum until the leg ends.
+  leg_.covariance.row(kLegMeanHeading) += leg_.covariance.row(2);
+  leg_.covariance.col(kLegMeanHeading) += leg_.covariance.col(2);
+  leg_.by_channel.row(kLegMeanHeading) += leg_.by_channel.row(2);
+}
+
+LegReckoning LegOdometry::finish() {
+  LegReckoning leg = std::move(leg_);
+  const double sum = sum_of_readings_;
+  begin();
+  if (leg.readings == 0) return leg;
+  const double share = 1.0 / leg.readings;
+  leg.heading = first_reading_ + share * sum;
+  leg.covariance.row(kLegMeanHeading) *= share;
+  leg.covariance.col(kLegMeanHeading) *= share;
+  leg.by_channel.row(kLegMeanHeading) *= share;
+  return leg;
+}
+
+}  // namespace trussmap
