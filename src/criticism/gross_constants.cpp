@@ -9,6 +9,7 @@
 #include "criticism/gross_cause.hpp"
 #include "criticism/look_alikes.hpp"
 #include "criticism/refits.hpp"
+#include "criticism/tested_candidate.hpp"
 #include "effects/channel_physics.hpp"
 #include "fit/fit_state.hpp"
 #include "odometry/wheels_and_gyro.hpp"
@@ -377,6 +378,17 @@ Finding finding_at(const std::vector<DrivenRecording>& recordings, const ModelFi
   return result;
 }
 
+/// A size that was fitted, beside what is known of its channel. A gross constant is none the less
+/// plausible.
+bool is_implausible_at(const ScoreTest& tests, const Effect& effect) {
+  if (effect.is_constant()) return false;
+  Tested fitted;
+  fitted.candidate.effect = effect;
+  fitted.score = tests.test({effect}).front();
+  fitted.score.coefficients = effect.coefficients;
+  return fitted.score.largest.size() == effect.coefficients.size() && is_implausible(fitted);
+}
+
 }  // namespace
 
 std::vector<Finding> findings_of(const std::vector<DrivenRecording>& recordings,
@@ -390,10 +402,12 @@ std::vector<Finding> findings_of(const std::vector<DrivenRecording>& recordings,
   }
   const double most = std::max(0.0, given.chi2 - fit.chi2);
   const ScoreTest at_fit(*fit.state);
+  const ScoreTest at_given(*given.state);
   std::vector<Finding> result;
   for (std::size_t k = constants.first; k < fit.model.effects.size(); ++k) {
     result.push_back(finding_at(recordings, fit, at_fit, k, most));
     result.back().held_out = predicted;
+    result.back().implausible = is_implausible_at(at_given, result.back().effect);
   }
   return result;
 }

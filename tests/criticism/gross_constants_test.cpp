@@ -95,6 +95,23 @@ TEST(SlowGrossConstants, TurningThreeTimesAsMuchAsStatedIsAWheelbase) {
   EXPECT_NEAR(found->fit.model.effects.back().coefficients.at(0), 2.0, 0.03);
 }
 
+TEST(SlowGrossConstants, AnErrorOfAnotherKindIsFittedByItself) {
+  SimulationSettings settings = small_world(9);
+  settings.no_compass = false;
+  settings.uneven = true;
+  settings.full_turns = 4;
+  for (const auto& [name, g] :
+       {std::pair{"turn asymmetry", 0.25}, std::pair{"twist per spin", 0.2}}) {
+    const SimulatedRecording one = simulate(settings, {catalogue_effect(name, {g})});
+    const std::vector<DrivenRecording> driven{testing::driven(one.drive.recording)};
+    const auto found =
+        gross_constants(driven, fit_model(driven, one.model, gated_fit()), LegOptions{});
+    ASSERT_TRUE(found) << name;
+    EXPECT_EQ(names_in(*found), std::vector<std::string>{name});
+    EXPECT_NEAR(found->fit.model.effects.back().coefficients.at(0), g, 0.03 * g);
+  }
+}
+
 TEST(SlowGrossConstants, AskForNoScaleThatNothingMeasures) {
   SimulationSettings settings = small_world(5);
   settings.no_survey = true;
