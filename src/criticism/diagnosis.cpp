@@ -170,13 +170,7 @@ class Diagnostician {
       return changes_nothing(one, with_it, floor) ? Status::negligible : Status::missing;
     }
     if (one.score.dof == 0) return Status::cannot_tell;
-    bool apart = false;  // of what is missing: then it is not there instead
-    for (const std::vector<LookAlike>& rivals : look_alikes_) {
-      const LookAlike* same = find_among(one.candidate.effect, rivals);
-      if (same != nullptr && !same->told_apart()) return Status::cannot_tell;
-      apart = apart || same != nullptr;
-    }
-    if (apart) return Status::absent;
+    if (const auto status = status_beside(one.candidate.effect, look_alikes_)) return *status;
     return detectable_rise(one, floor) <= kPractical ? Status::absent : Status::cannot_tell;
   }
 
@@ -413,6 +407,12 @@ DiagnosisRun diagnosis_beside(const std::vector<DrivenRecording>& recordings, co
       return find_among(one.effect, finding.look_alikes) != nullptr;  // that is said already
     });
   });
+  std::vector<std::vector<LookAlike>> rivals;
+  for (const Finding& one : first) rivals.push_back(one.look_alikes);
+  for (Finding& other : result.findings) {
+    if (other.status != Status::cannot_tell && other.status != Status::absent) continue;
+    other.status = status_beside(other.effect, rivals).value_or(other.status);
+  }
   result.findings.insert(result.findings.begin(), first.begin(), first.end());
   run.candidates.insert(run.candidates.begin(), candidates.begin(), candidates.end());
   run.gross = std::move(constants);

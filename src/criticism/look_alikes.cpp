@@ -140,4 +140,16 @@ const LookAlike* find_among(const Effect& effect, const std::vector<LookAlike>& 
   return found == rivals.end() ? nullptr : &*found;
 }
 
+std::optional<Status> status_beside(const Effect& effect,
+                                    const std::vector<std::vector<LookAlike>>& rivals) {
+  std::optional<Status> status;
+  for (const std::vector<LookAlike>& one : rivals) {
+    const LookAlike* same = find_among(effect, one);
+    if (same == nullptr) continue;
+    if (!same->told_apart()) return Status::cannot_tell;
+    status = Status::absent;
+  }
+  return status;
+}
+
 }  // namespace trussmap

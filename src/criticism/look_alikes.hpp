@@ -44,4 +44,9 @@ void weigh_by_fits(std::vector<LookAlike>& alike, const Effect& effect, const Sc
 [[nodiscard]] const LookAlike* find_among(const Effect& effect,
                                           const std::vector<LookAlike>& rivals);
 
+/// Of an effect that is a look-alike of some that are missing: absent where fits tell it from all
+/// of them, else it cannot be told; nothing where it is none's.
+[[nodiscard]] std::optional<Status> status_beside(
+    const Effect& effect, const std::vector<std::vector<LookAlike>>& rivals);
+
 }  // namespace trussmap
