@@ -408,6 +408,7 @@ DiagnosisRun diagnosis_beside(const std::vector<DrivenRecording>& recordings, co
     });
   });
   std::vector<std::vector<LookAlike>> rivals;
+  rivals.reserve(first.size());
   for (const Finding& one : first) rivals.push_back(one.look_alikes);
   for (Finding& other : result.findings) {
     if (other.status != Status::cannot_tell && other.status != Status::absent) continue;

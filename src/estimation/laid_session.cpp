@@ -55,7 +55,7 @@ LaidSession lay_poses(const SessionToLay& session, LaidSession laid, int first, 
     if (drive != nullptr) robot.read_compass(*drive);
     robot.look(session.seen_at[idx(k)], correct);
     laid.poses[idx(k)] = robot.pose();
-    if (k < last) robot.drive(*drive);
+    if (drive != nullptr && k < last) robot.drive(*drive);
   }
   laid.coefficients = robot.coefficients();
   return laid;
