@@ -68,6 +68,7 @@ std::vector<NoiseProcess> lasting_processes(Noise& noise, const Robot& robot) {
 std::vector<Channel> channels_followed(const std::vector<WatchedEffect>& effects,
                                        const std::vector<NoiseProcess>& lasting) {
   std::vector<Channel> result;
+  result.reserve(effects.size() + lasting.size());
   for (const WatchedEffect& one : effects) result.push_back(one.channel);
   for (const NoiseProcess& one : lasting) result.push_back(one.channel);
   return result;
@@ -123,7 +124,7 @@ class __attribute__((visibility("hidden"))) Monitor::State {
   }
 
   CorrectedRow drive(const WheelRow& row, std::span<const double> covariates) {
-    const CorrectedRow result = odometry_.drive(row, covariates);
+    CorrectedRow result = odometry_.drive(row, covariates);
     const RowMotion& shown = odometry_.shown();
     // The variance of the excess: the gyro's, and that of the wheels (wheels_and_gyro.hpp).
     const double gyro = noise_.gyro * noise_.gyro * shown.duration;
