@@ -47,9 +47,7 @@ ordered_json json_of(const DiscoveryStep& step) {
   if (step.added) {
     one["added"] = effect_json(*step.added);
     one["added"]["coefficients"] = step.added->coefficients;
-    if (!step.together.empty()) {
-      for (const Effect& other : step.together) one["together"].push_back(other.name);
-    }
+    for (const Effect& other : step.together) one["together"].push_back(other.name);
     one["dropped"] = step.dropped;
     one["promised"] = {{"chi2_decrease", step.predicted_decrease},
                        {"arrival_rms_m", step.predicted.arrival_rms}};

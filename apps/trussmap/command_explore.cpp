@@ -4,6 +4,7 @@
 // trussmap explore: a robot explores an unknown mesh (apps/explore), and how good its map becomes.
 #include "commands.hpp"
 #include "explorer.hpp"
+#include "json_values.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "scope_options.hpp"
@@ -64,14 +65,8 @@ ordered_json tours_json(const std::vector<Tour>& tours) {
 ordered_json alarms_json(const std::vector<explore::Alarm>& alarms) {
   ordered_json list = ordered_json::array();
   for (const explore::Alarm& alarm : alarms) {
-    const Effect& effect = alarm.found.effect;
-    list.push_back({{"leg", alarm.legs},
-                    {"since_leg", alarm.found.leg},
-                    {"effect", effect.name},
-                    {"channel", name_of(effect.channel)},
-                    {"shape", texts_of(effect.shape)},
-                    {"coefficients", effect.coefficients},
-                    {"sd", std::vector<double>{alarm.found.sd}}});
+    list.push_back({{"leg", alarm.legs}, {"since_leg", alarm.found.leg}});
+    list.back().update(constant_json(alarm.found.effect, alarm.found.sd));
   }
   return list;
 }

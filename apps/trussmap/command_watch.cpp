@@ -39,16 +39,13 @@ ordered_json found_json(const FoundEffect& found) {
   for (const MonitorLookAlike& one : found.look_alikes) {
     alike.push_back({{"effect", one.name}, {"cosine", one.cosine}, {"share", one.share}});
   }
-  return {{"effect", found.effect.name},
-          {"channel", name_of(found.effect.channel)},
-          {"shape", texts_of(found.effect.shape)},
-          {"coefficients", found.effect.coefficients},
-          {"sd", std::vector<double>{found.sd}},
-          {"share", found.share},
-          {"leg", found.leg},
-          {"earliest_leg", found.earliest},
-          {"latest_leg", found.latest},
-          {"indistinguishable_from", alike}};
+  ordered_json json = constant_json(found.effect, found.sd);
+  json.update({{"share", found.share},
+               {"leg", found.leg},
+               {"earliest_leg", found.earliest},
+               {"latest_leg", found.latest},
+               {"indistinguishable_from", alike}});
+  return json;
 }
 
 ordered_json json_of(const Watch& result, double rate) {

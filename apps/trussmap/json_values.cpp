@@ -26,6 +26,13 @@ ordered_json effect_json(const Effect& effect) {
           {"shape", texts_of(effect.shape)}};
 }
 
+ordered_json constant_json(const Effect& effect, double sd) {
+  ordered_json one = effect_json(effect);
+  one["coefficients"] = effect.coefficients;
+  one["sd"] = std::vector<double>{sd};
+  return one;
+}
+
 ordered_json look_alikes_json(const std::vector<LookAlike>& look_alikes) {
   ordered_json list = ordered_json::array();
   for (const LookAlike& one : look_alikes) {

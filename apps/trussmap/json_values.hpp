@@ -21,6 +21,8 @@ namespace trussmap::app {
 
 /// Name, channel and shape.
 [[nodiscard]] nlohmann::ordered_json effect_json(const Effect& effect);
+/// The same with the coefficient of a constant, and its standard error.
+[[nodiscard]] nlohmann::ordered_json constant_json(const Effect& effect, double sd);
 [[nodiscard]] nlohmann::ordered_json look_alikes_json(const std::vector<LookAlike>& look_alikes);
 /// How many sightings were used, of how many.
 [[nodiscard]] nlohmann::ordered_json sightings_json(const UsedSightings& sightings);

@@ -136,6 +136,8 @@ struct Advice {
 
 /// What speaks against the model: "errors are 2.3 times what the model's noise allows".
 [[nodiscard]] std::string objection_in_words(const Comparison& result);
+/// The same where a diagnosis may object to the noise by which the model was compared.
+[[nodiscard]] std::string objection_in_words(const Diagnosis& diagnosis, const Comparison& result);
 
 // Responses (evidence.hpp).
 

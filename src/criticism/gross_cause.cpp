@@ -4,13 +4,12 @@
 
 #include "criticism/candidates.hpp"
 #include "criticism/effect_strength.hpp"
+#include "criticism/refits.hpp"
 #include "criticism/score_test.hpp"
 #include "fit/fit_state.hpp"
 #include "odometry/wheels_and_gyro.hpp"
-#include "trussmap/error.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 
 namespace trussmap {
@@ -48,18 +47,10 @@ std::optional<ModelFit> fitted_alone(const std::vector<DrivenRecording>& recordi
   model.effects.push_back(effect);
   FitOptions open = given.options;
   open.gate.reset();
-  try {
-    const ModelFit found = fit_model(recordings, model, open);
-    if (found.chi2 > kLittleLeft * std::max(1, found.dof)) return std::nullopt;
-    if (!found.effects.back().not_fitted.empty()) return std::nullopt;
-    return fit_model(recordings, found.model, given.options);
-  } catch (const SolveError&) {
-    return std::nullopt;
-  } catch (const InputError&) {
-    return std::nullopt;
-  } catch (const std::invalid_argument&) {  // a factor that leaves no travel
-    return std::nullopt;
-  }
+  const auto found = if_possible<ModelFit>([&] { return fit_model(recordings, model, open); });
+  if (!found || found->chi2 > kLittleLeft * std::max(1, found->dof)) return std::nullopt;
+  if (!found->effects.back().not_fitted.empty()) return std::nullopt;
+  return if_possible<ModelFit>([&] { return fit_model(recordings, found->model, given.options); });
 }
 
 /// From nothing, then from a quarter more and less of the motion: a fit from nothing may be lost.

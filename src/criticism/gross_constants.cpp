@@ -87,13 +87,13 @@ std::optional<ModelFit> fitted_afresh(const std::vector<DrivenRecording>& record
   return if_possible<ModelFit>([&] { return fit_model(recordings, model, given.options); });
 }
 
-/// All of them at once.
+/// All of them at once. `start` is made where it is wanted, once.
 std::optional<ModelFit> with_all(const std::vector<DrivenRecording>& recordings,
-                                 const ModelFit& given, const std::vector<Effect>& constants) {
-  std::optional<CalibratedStart> start;
+                                 const ModelFit& given, const std::vector<Effect>& constants,
+                                 std::optional<CalibratedStart>& start) {
   std::optional<ModelFit> best;
   if (is_far_off(given)) {
-    start = start_of_constants(recordings, given, constants);
+    if (!start) start = start_of_constants(recordings, given, constants);
     // About a fit that has a sensor metres off no other fit can begin.
     if (start->far_places) best = fitted_afresh(recordings, given, start->constants);
     if (!is_far_off(best)) return best;
@@ -260,9 +260,10 @@ double per_dof(const ModelFit& fit) {
 /// Those that the recordings surely show, where they matter.
 std::optional<ModelFit> those_that_matter(const std::vector<DrivenRecording>& recordings,
                                           const ModelFit& given,
-                                          const std::vector<Effect>& constants) {
+                                          const std::vector<Effect>& constants,
+                                          std::optional<CalibratedStart>& start) {
   const std::size_t first = given.model.effects.size();
-  const std::optional<ModelFit> all = with_all(recordings, given, constants);
+  const std::optional<ModelFit> all = with_all(recordings, given, constants, start);
   if (!all || !matters(*all, first)) return std::nullopt;
   const std::optional<ModelFit> strong = strong_ones(recordings, *all, first);
   if (!strong) return std::nullopt;
@@ -275,10 +276,11 @@ std::optional<ModelFit> those_that_matter(const std::vector<DrivenRecording>& re
 /// looks at what comes of them all.
 std::optional<ModelFit> those_without_gate(const std::vector<DrivenRecording>& recordings,
                                            const ModelFit& given,
-                                           const std::vector<Effect>& constants) {
+                                           const std::vector<Effect>& constants,
+                                           std::optional<CalibratedStart>& start) {
   ModelFit open = given;
   open.options.gate.reset();
-  std::optional<ModelFit> found = those_that_matter(recordings, open, constants);
+  std::optional<ModelFit> found = those_that_matter(recordings, open, constants, start);
   if (!found) return std::nullopt;
   found->options = given.options;
   return if_possible<ModelFit>([&] { return refit(recordings, found->model, *found); });
@@ -326,9 +328,10 @@ std::optional<GrossConstants> sure_constants(const std::vector<DrivenRecording>&
   const std::vector<Effect> constants = constants_for(recordings, given);
   if (constants.empty()) return std::nullopt;
   const std::size_t first = given.model.effects.size();
-  std::optional<ModelFit> sure = those_that_matter(recordings, given, constants);
+  std::optional<CalibratedStart> start;
+  std::optional<ModelFit> sure = those_that_matter(recordings, given, constants, start);
   if (given.options.gate && is_far_off(sure)) {
-    sure = better_of(std::move(sure), those_without_gate(recordings, given, constants));
+    sure = better_of(std::move(sure), those_without_gate(recordings, given, constants, start));
   }
   if (!sure || per_dof(*sure) > kMostLeft * per_dof(given)) return std::nullopt;
   if (is_far_off(sure) && predicts_worse(recordings, given, *sure, legs)) return std::nullopt;
@@ -380,8 +383,9 @@ Finding finding_at(const std::vector<DrivenRecording>& recordings, const ModelFi
 
 /// A size that was fitted, beside what is known of its channel. A gross constant is none the less
 /// plausible.
-bool is_implausible_at(const ScoreTest& tests, const Effect& effect) {
+bool is_implausible(const ModelFit& given, const Effect& effect) {
   if (effect.is_constant()) return false;
+  const ScoreTest tests(*given.state);
   Tested fitted;
   fitted.candidate.effect = effect;
   fitted.score = tests.test({effect}).front();
@@ -402,12 +406,11 @@ std::vector<Finding> findings_of(const std::vector<DrivenRecording>& recordings,
   }
   const double most = std::max(0.0, given.chi2 - fit.chi2);
   const ScoreTest at_fit(*fit.state);
-  const ScoreTest at_given(*given.state);
   std::vector<Finding> result;
   for (std::size_t k = constants.first; k < fit.model.effects.size(); ++k) {
     result.push_back(finding_at(recordings, fit, at_fit, k, most));
     result.back().held_out = predicted;
-    result.back().implausible = is_implausible_at(at_given, result.back().effect);
+    result.back().implausible = is_implausible(given, result.back().effect);
   }
   return result;
 }

@@ -3,6 +3,7 @@
 #include "estimation/segment_motion.hpp"
 
 #include "drive/body_motion.hpp"
+#include "drive/unit_arc.hpp"
 #include "odometry/row_reckoner.hpp"
 
 #include <cmath>
@@ -11,21 +12,6 @@ namespace trussmap {
 namespace {
 
 constexpr double kLeastSegmentSd = 1e-5;  // m and rad
-
-/// Direction of an arc's chord times chord/path, (sin a/a, (1 - cos a)/a), and its derivative.
-struct UnitArc {
-  Vector2 end;
-  Vector2 slope;
-};
-
-UnitArc unit_arc(double a) {
-  if (std::abs(a) < 1e-4) {
-    return {{1.0 - a * a / 6.0, 0.5 * a - a * a * a / 24.0}, {-a / 3.0, 0.5 - a * a / 8.0}};
-  }
-  const double s = std::sin(a);
-  const double c = std::cos(a);
-  return {{s / a, (1.0 - c) / a}, {(a * c - s) / (a * a), (a * s - 1.0 + c) / (a * a)}};
-}
 
 /// A row's motion under the effects.
 struct Step {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "monitor/leg_filter.hpp"
 
+#include "drive/unit_arc.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -153,11 +155,9 @@ void LegFilter::update(const Eigen::VectorXd& innovation, const Eigen::MatrixXd&
 /// are reckoned from where they are then: exp(e) = exp(e') exp(moved), to first order in e'.
 void LegFilter::move_state(const Eigen::VectorXd& more) {
   const double turn = -more[heading_at()];
-  const bool small = std::abs(turn) < 1e-6;
-  const double s = small ? 1.0 : std::sin(turn) / turn;
-  const double c = small ? 0.5 * turn : (1.0 - std::cos(turn)) / turn;
+  const UnitArc arc = unit_arc(turn);
   Matrix2 V;
-  V << s, -c, c, s;
+  V << arc.end, quarter_turn(arc.end);
   x_.head(anchor_at()) += more.head(anchor_at());
   x_.segment<2>(mean_at()) += more.segment<2>(mean_at());
   const auto move = [&](Eigen::Index at) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "monitor/leg_odometry.hpp"
 
+#include "drive/unit_arc.hpp"
+
 #include <cmath>
 #include <utility>
 
@@ -15,17 +17,10 @@ struct ArcDerivatives {
 };
 
 ArcDerivatives arc_derivatives(const BodyMotion& body) {
-  // displacement = [s -c; c s] way, with s = sin a/a and c = (1 - cos a)/a.
-  const double a = body.turn;
-  const bool small = std::abs(a) < 1e-4;
-  const double s = small ? 1.0 - a * a / 6.0 : std::sin(a) / a;
-  const double c = small ? 0.5 * a : (1.0 - std::cos(a)) / a;
-  const double more_s = small ? -a / 3.0 : (std::cos(a) - s) / a;
-  const double more_c = small ? 0.5 - a * a / 8.0 : (std::sin(a) - c) / a;
+  const UnitArc arc = unit_arc(body.turn);
   ArcDerivatives result;
-  result.by_way << s, -c, c, s;
-  result.by_turn = {more_s * body.forward - more_c * body.sideways,
-                    more_c * body.forward + more_s * body.sideways};
+  result.by_way << arc.end, quarter_turn(arc.end);
+  result.by_turn = body.forward * arc.slope + body.sideways * quarter_turn(arc.slope);
   return result;
 }
 

@@ -30,6 +30,12 @@ constexpr double kPerHour = 1.0 / 3600.0;
   throw std::invalid_argument("monitor: " + why);
 }
 
+/// Whether the end of a leg shows what acts on this channel.
+bool is_seen(Channel channel, const Robot& robot) {
+  return (acts_on(channel) == ActsOn::drives || channel == Channel::compass) &&
+         is_of_drive(channel, robot);
+}
+
 MonitorOptions checked_options(MonitorOptions options, const Model& model,
                                const OdometryInputs& inputs) {
   if (!(options.false_alarms_per_hour > 0.0) || !std::isfinite(options.false_alarms_per_hour)) {
@@ -41,8 +47,7 @@ MonitorOptions checked_options(MonitorOptions options, const Model& model,
   if (options.landmarks < 2) refuse_monitor("it has to keep 2 landmarks or more");
   if (options.effects.empty()) options.effects = watched_effects(model.robot, inputs);
   for (const WatchedEffect& one : options.effects) {
-    const bool seen = acts_on(one.channel) == ActsOn::drives || one.channel == Channel::compass;
-    if (!seen || !is_of_drive(one.channel, model.robot)) {
+    if (!is_seen(one.channel, model.robot)) {
       refuse_monitor("\"" + one.name + "\" acts on channel " + std::string(name_of(one.channel)) +
                      ", which it does not see on this robot");
     }
@@ -59,8 +64,7 @@ std::vector<NoiseProcess> lasting_processes(Noise& noise, const Robot& robot) {
   for (const NoiseProcess& one : noise.processes) {
     if (one.channel == Channel::range) noise.range = std::hypot(noise.range, one.sd);
     if (one.channel == Channel::bearing) noise.bearing = std::hypot(noise.bearing, one.sd);
-    const bool seen = acts_on(one.channel) == ActsOn::drives || one.channel == Channel::compass;
-    if (seen && one.sd > 0.0 && is_of_drive(one.channel, robot)) result.push_back(one);
+    if (one.sd > 0.0 && is_seen(one.channel, robot)) result.push_back(one);
   }
   return result;
 }

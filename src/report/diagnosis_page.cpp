@@ -72,10 +72,8 @@ std::string page_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence& ev
       if (is_slight_misfit(diagnosis)) return faultless_verdict(diagnosis, legs_end(diagnosis));
       break;
   }
-  Comparison misfit = evidence.given.comparison;
-  if (diagnosis.objection == Objection::noise) misfit.objection = Objection::noise;
-  const std::string text =
-      "Something is wrong that no effect explains: " + objection_in_words(misfit) + ".";
+  const std::string text = "Something is wrong that no effect explains: " +
+                           objection_in_words(diagnosis, evidence.given.comparison) + ".";
   const std::vector<std::string> others = others_notes(diagnosis);
   return others.empty() ? text : text + " " + others.front();
 }

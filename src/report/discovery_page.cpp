@@ -118,10 +118,8 @@ std::string found_verdict(const Discovery& discovery, const DiscoveryEvidence& e
                                           : "Something is still unexplained.");
   }
   if (is_unexplained(discovery)) {
-    Comparison misfit = now;
-    if (discovery.last.objection == Objection::noise) misfit.objection = Objection::noise;
     return fmt::format("Nothing found, and something is unexplained: {}.{}",
-                       objection_in_words(misfit), off);
+                       objection_in_words(discovery.last, now), off);
   }
   return faultless_verdict(discovery.last, off);
 }

@@ -18,7 +18,7 @@ std::string beyond_noise(double chi2, int dof) {
 }
 
 /// A verdict, and by how many of the sightings it is one.
-std::string judged(std::string verdict, const UsedSightings& sightings) {
+std::string judged(const std::string& verdict, const UsedSightings& sightings) {
   const std::string by = in_words(sightings);
   return by.empty() ? verdict : verdict + "; " + by;
 }
@@ -118,6 +118,10 @@ std::string objection_in_words(const Comparison& result) {
   return fmt::format(
       "errors are small enough as a whole, but {} is missing (see trussmap diagnose)",
       result.missing);
+}
+
+std::string objection_in_words(const Diagnosis& diagnosis, const Comparison& result) {
+  return diagnosis.objection == Objection::noise ? kNoNoise : objection_in_words(result);
 }
 
 std::string verdict_in_words(const Comparison& result) {

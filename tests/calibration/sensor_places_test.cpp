@@ -47,6 +47,17 @@ Unknowing unknowing(const SimulationSettings& settings, const std::vector<Effect
   return {std::move(made.drive.recording), std::move(made.model)};
 }
 
+/// By an antenna far from the axle, and nothing else.
+Unknowing known_by_fixes(std::uint64_t seed) {
+  SimulationSettings settings = yard(seed);
+  settings.fix_rate = 0.5;
+  settings.mounted.antenna = kFar;
+  Unknowing one = unknowing(settings);
+  one.recording.sightings.clear();
+  one.recording.survey.clear();
+  return one;
+}
+
 const CalibratedMounting* mounting_of(const WheelCalibration& found, const std::string& of) {
   const auto at = std::find_if(found.mountings.begin(), found.mountings.end(),
                                [&of](const CalibratedMounting& one) { return one.of == of; });
@@ -96,12 +107,7 @@ TEST(SensorPlaces, ThatTheTruthTracksIsFound) {
 }
 
 TEST(SensorPlaces, OfAnAntennaAreFound) {
-  SimulationSettings settings = yard(2);
-  settings.fix_rate = 0.5;
-  settings.mounted.antenna = kFar;
-  Unknowing one = unknowing(settings);
-  one.recording.sightings.clear();
-  one.recording.survey.clear();
+  const Unknowing one = known_by_fixes(2);
   expect_far_place(calibrate_wheels({one.recording}, one.model), "antenna", false);
 }
 
@@ -197,12 +203,7 @@ TEST(SensorPlaces, AreLeftAsStatedWhereTheDriveTellsNone) {
 
 /// Effects of places act on top of what is stated, once, and go into [robot].
 TEST(SensorPlaces, StartFromWhatTheModelHas) {
-  SimulationSettings settings = yard(7);
-  settings.fix_rate = 0.5;
-  settings.mounted.antenna = kFar;
-  Unknowing one = unknowing(settings);
-  one.recording.sightings.clear();
-  one.recording.survey.clear();
+  Unknowing one = known_by_fixes(7);
   const WheelCalibration plain = calibrate_wheels({one.recording}, one.model);
   one.model.robot.mounted.antenna = Mounting{1.0, 0.0, 0.0};
   one.model.effects.push_back(catalogue_effect("antenna ahead of the axle", {2.0}));
