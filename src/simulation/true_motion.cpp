@@ -108,7 +108,7 @@ struct PlannedLeg {
 /// is turned against its way w by a known angle, and so its sensor lies at a known s in the way's
 /// axes: w + s is the target, and what s has aside says how far beside the target the way leads.
 Vector2 way_to(const Vector2& target, const PlannedLeg& leg, const Pose& here) {
-  const Vector2 straight = target - here.position();
+  Vector2 straight = target - here.position();
   if (leg.sensor.isZero(0.0)) return straight;
   const double distance = straight.norm();
   const Vector2 s = rotation(leg.shape.headings.back() - direction(leg.shape.end)) * leg.sensor;
