@@ -27,7 +27,7 @@ sys.dont_write_bytecode = True  # nothing is left beside the sources
 from pages import TOP, Contents
 
 FENCE = re.compile(r"^( *)```([a-z]*)\n(.*?)^\1```$", re.M | re.S)
-MARK = re.compile(r"<!-- (file|not run|status): (.*?) -->\s*$")
+MARK = re.compile(r"<!-- (file|not run): (.*?) -->\s*$")
 PROJECT = ("src", "include", "apps", "tests", "docs", "maps", "cmake", "CMakeLists.txt",
            "README.md", "CHANGELOG.md")
 
