@@ -19,7 +19,7 @@ import random
 import subprocess
 import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "../tests/io/bags"))
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "../tests/logs/bags"))
 import mcap_file  # noqa: E402
 import messages as ros  # noqa: E402
 from ros2_cdr import Encoder  # noqa: E402

@@ -4,7 +4,7 @@
 
     python3 bench/hidden_bags.py build/trussmap [SCRATCH]
 
-Each bag is written by tests/io/bags (not by trussmap), out of a simulated recording; `convert` and
+Each bag is written by tests/logs/bags (not by trussmap), out of a simulated recording; `convert` and
 `discover` have it and the first map.toml alone, with the lines changed that are listed. Needs
 python3-lz4 and python3-zstandard.
 """

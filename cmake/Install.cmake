@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The trussmap authors
 # SPDX-License-Identifier: MIT
 #
-# Four sets of static targets, five with MPI, so that find_package(trussmap COMPONENTS map) needs only what maps need.
+# Five sets of static targets, six with MPI, so that find_package(trussmap COMPONENTS map) needs only what maps need.
 include(CMakePackageConfigHelpers)
 
 set(TRUSSMAP_ZSH_FOLDER site-functions CACHE STRING "Where zsh looks for completions, below share/zsh")
@@ -50,7 +50,7 @@ else()  # their users link what they need
   install(FILES cmake/FindCholmod.cmake cmake/FindLz4.cmake DESTINATION ${config_dir})
   set(requires
       "eigen3 lapack blas fmt muparser liblzma expat tomlplusplus sqlite3 liblz4 libzstd yaml-cpp")
-  set(libs "-ltrussmap_logs -ltrussmap_store -ltrussmap -ltrussmap_map -lcholmod -pthread")
+  set(libs "-ltrussmap_datasets -ltrussmap_logs -ltrussmap_store -ltrussmap -ltrussmap_map -lcholmod -pthread")
   set(map_requires "eigen3 lapack blas")
   set(map_libs "-ltrussmap_map -lcholmod -pthread")
 endif()

@@ -5,7 +5,7 @@
 # nothing else: neither our rooms nor what is instantiated of Eigen or the standard library. Until
 # 1.0 each minor version has a binary interface, and so a name, of its own.
 #
-# It is one, not four, since its parts use each other's rooms. trussmap::map and the like, by which a
+# It is one, not five, since its parts use each other's rooms. trussmap::map and the like, by which a
 # program links static libraries, are there as well: names for the one library.
 add_library(trussmap SHARED)
 if(PROJECT_VERSION_MAJOR EQUAL 0)

@@ -4,7 +4,7 @@
 
     python3 maps/make_logs.py build/trussmap
 
-Needs python3-zstandard. The logs are written by tests/io/bags, which share nothing with the readers.
+Needs python3-zstandard. The logs are written by tests/logs/bags, which share nothing with the readers.
 """
 
 import csv

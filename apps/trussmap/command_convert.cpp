@@ -9,6 +9,7 @@
 #include "map_yaml_output.hpp"
 #include "path_checks.hpp"
 #include "private_folder.hpp"
+#include "trussmap/datasets.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/log_files.hpp"
 #include "trussmap/map_files.hpp"
@@ -17,6 +18,7 @@
 #include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -39,137 +41,20 @@ struct ConvertOptions {
   MapYamlOptions yaml;
 };
 
-void count(int number, const char* what) {
-  if (number > 0) fmt::print("  {:>7} {}\n", number, what);
+void print_figure(const DatasetFigure& one) {
+  if (one.value == 0.0) return;
+  if (one.value == std::floor(one.value)) {
+    fmt::print("  {:>7.0f} {}\n", one.value, one.words);
+  } else {
+    fmt::print("  {:>7.4f} {}\n", one.value, one.words);
+  }
 }
 
-void convert_mrclam(const fs::path& in, const fs::path& out) {
-  const MrclamRecording foreign = read_mrclam(in);
-  write_recording(out, foreign.recording,
-                  fmt::format("t = 0 is {:.0f} s, Unix time", foreign.epoch),
-                  {{"model.toml", format_model(foreign.model)}});
-  const Recording& recording = foreign.recording;
-  fmt::print("converted: MRCLAM {} to the recording {}\n\n", in.string(), out.string());
-  count(static_cast<int>(recording.drive.rows()), "drive rows");
-  count(static_cast<int>(recording.sightings.size()), "sightings");
-  count(static_cast<int>(recording.survey.size()), "surveyed landmarks");
-  count(static_cast<int>(recording.truth.size()), "truth rows");
-  count(foreign.merged_times, "odometry rows merged: their time repeats or runs backwards");
-  count(foreign.robots_seen, "sightings of other robots dropped");
-  count(foreign.unknown_barcodes, "sightings of unknown barcodes dropped");
-  count(foreign.outside_drive, "sightings outside of the drive dropped");
-  count(foreign.unordered_sightings, "sightings were out of order in time");
-  count(foreign.same_frame, "sightings set to the time of their camera frame (within 5 ms)");
-}
-
-void convert_optiodom(const fs::path& in, const fs::path& out) {
-  const OptiOdomRecording foreign = read_optiodom(in);
-  const Recording& recording = foreign.recording;
-  write_recording(out, recording, fmt::format("OptiOdom run {}", in.filename().string()),
-                  {{"model.toml", format_model(foreign.model)}});
-  fmt::print("converted: OptiOdom {} to the recording {}\n\n", in.string(), out.string());
-  fmt::print("  {:>7} drive rows, each with the truth\n", recording.drive.rows());
-  fmt::print("  {:>7.4f} mm a tick\n", 1000.0 * foreign.metre_per_tick);
-}
-
-void convert_radio_ranges(const fs::path& in, const fs::path& out) {
-  const RangeRecording foreign = read_radio_ranges(in);
-  const Recording& recording = foreign.recording;
-  write_recording(out, recording, fmt::format("t = 0 is {:.0f} s", foreign.epoch),
-                  {{"model.toml", format_model(foreign.model)}});
-  fmt::print("converted: ranges to radio beacons {} to the recording {}\n\n", in.string(),
-             out.string());
-  count(static_cast<int>(recording.drive.rows()), "drive rows, as of a wheelbase of 1 m");
-  count(static_cast<int>(recording.sightings.size()), "ranges");
-  count(static_cast<int>(recording.truth.size()), "truth rows");
-  count(foreign.outside_drive, "ranges outside of the drive dropped");
-  count(foreign.unordered_ranges, "ranges were out of order in time");
-}
-
-void convert_place_loops(const fs::path& in, const fs::path& out) {
-  const PlaceLoopRecording foreign = read_place_loops(in);
-  const Recording& recording = foreign.recording;
-  write_recording(out, recording, fmt::format("places that look alike, {}", in.string()),
-                  {{"model.toml", format_model(foreign.model)}});
-  fmt::print("converted: places that look alike {} to the recording {}\n\n", in.string(),
-             out.string());
-  count(static_cast<int>(recording.drive.rows()), "drive rows, as of a wheelbase of 1 m");
-  count(static_cast<int>(recording.loops.size()), "loops");
-  count(foreign.outside_drive, "loops outside of the drive dropped");
-}
-
-void convert_phil(const fs::path& in, const fs::path& out) {
-  const PhilRecording foreign = read_phil(in);
-  const Recording& recording = foreign.recording;
-  const std::string clocks =
-      foreign.aligned
-          ? fmt::format(
-                "the gyro's log is {:.3f} s later than the wheels', by their turns (correlation "
-                "{:.3f}): set back",
-                foreign.gyro_late, foreign.gyro_likeness)
-          : fmt::format(
-                "the gyro's clock stays as it is: its turns and the wheels' are too little alike "
-                "(correlation {:.2f})",
-                foreign.gyro_likeness);
-  write_recording(out, recording,
-                  fmt::format("t = 0 is {:.3f} s, Unix time\n{}", foreign.epoch, clocks),
-                  {{"model.toml", format_model(foreign.model)}});
-  fmt::print("converted: PHIL {} to the recording {}\n\n", in.string(), out.string());
-  count(foreign.tick_rows, "rows of ticks, of which were made");
-  count(static_cast<int>(recording.drive.rows()), "drive rows");
-  count(static_cast<int>(recording.truth.size()), "truth rows");
-  count(foreign.stale_samples, "rows that repeat a sample of the gyro skipped");
-  count(foreign.lost_frames, "frames without the robot, or where it jumps, left out");
-  fmt::print("  {}\n", clocks);
-}
-
-void convert_pose_graph(const fs::path& in, const fs::path& out) {
-  const GraphRecording foreign = read_graph_recording(in);
-  const Recording& recording = foreign.recording;
-  write_recording(out, recording, fmt::format("the pose graph {}, a second per pose", in.string()),
-                  {{"model.toml", format_model(foreign.model)}});
-  fmt::print("converted: the pose graph {} to the recording {}\n\n", in.string(), out.string());
-  count(static_cast<int>(recording.drive.rows()), "drive rows, a second per pose");
-  count(static_cast<int>(recording.loops.size()), "loops");
-  count(static_cast<int>(recording.sightings.size()), "sightings");
-  count(foreign.uneven_edges,
-        "rows whose noise is not half to twice the median, which the model has");
-}
-
-void convert_steered_truck(const fs::path& in, const fs::path& out) {
-  const TruckRecording foreign = read_steered_truck(in);
-  const Recording& recording = foreign.recording;
-  write_recording(out, recording, fmt::format("a truck with steering and GPS, {}", in.string()),
-                  {{"model.toml", format_model(foreign.model)}});
-  fmt::print("converted: a truck with steering and GPS {} to the recording {}\n\n", in.string(),
-             out.string());
-  count(static_cast<int>(recording.drive.rows()), "drive rows, of one wheel and the steering");
-  count(static_cast<int>(recording.fixes.size()), "fixes");
-  count(foreign.repeated_fixes, "fixes whose time repeats or runs backwards dropped");
-  count(foreign.graph_poses, "poses of victoriaPark.txt found in the drive");
-  count(static_cast<int>(recording.sightings.size()), "sightings of trees from there");
-}
-
-void convert_line_robot(const fs::path& in, const fs::path& out) {
-  const LineRecording foreign = read_line_robot(in);
-  const Recording& recording = foreign.recording;
-  write_recording(out, recording, fmt::format("a robot on a line, {}", in.string()),
-                  {{"model.toml", format_model(foreign.model)}});
-  fmt::print("converted: a robot on a line {} to the recording {}\n\n", in.string(), out.string());
-  count(static_cast<int>(recording.drive.rows()), "drive rows, as of a wheelbase of 1 m");
-  count(static_cast<int>(recording.sightings.size()), "ranges to the post");
-  count(static_cast<int>(recording.truth.size()), "truth rows");
-}
-
-void convert_encoder_log(const fs::path& in, const fs::path& out) {
-  const EncoderLogRecording foreign = read_encoder_log(in);
-  write_recording(out, foreign.recording,
-                  fmt::format("t = 0 is {:.3f} s, Unix time", foreign.epoch),
-                  {{"model.toml", format_model(foreign.model)}});
-  fmt::print("converted: a tricycle's encoders {} to the recording {}\n\n", in.string(),
-             out.string());
-  count(foreign.samples, "samples, of which five make one of the");
-  count(static_cast<int>(foreign.recording.drive.rows()), "drive rows, each with the truth");
+void convert_dataset(const DatasetFormat& format, const fs::path& in, const fs::path& out) {
+  const Dataset read = format.read(in);
+  write_recording(out, read.recording, read.comment, {{"model.toml", format_model(read.model)}});
+  fmt::print("converted: {} {} to the recording {}\n\n", format.name, in.string(), out.string());
+  for (const DatasetFigure& one : read.figures) print_figure(one);
 }
 
 /// A recording is a folder; a map's or bag's name for it is a mistake.
@@ -183,21 +68,6 @@ void check_folder(const fs::path& out) {
                      "which a second convert makes a bag of");
   }
 }
-
-/// A kind of foreign recording: what tells it, and what converts it.
-struct Foreign {
-  bool (*is)(const fs::path& in);
-  void (*convert)(const fs::path& in, const fs::path& out);
-};
-
-constexpr Foreign kForeign[] = {{&is_mrclam, &convert_mrclam},
-                                {&is_optiodom, &convert_optiodom},
-                                {&is_radio_ranges, &convert_radio_ranges},
-                                {&is_place_loops, &convert_place_loops},
-                                {&is_phil, &convert_phil},
-                                {&is_steered_truck, &convert_steered_truck},
-                                {&is_line_robot, &convert_line_robot},
-                                {&is_encoder_log, &convert_encoder_log}};
 
 /// The map's text, which its reader takes: what a format cannot hold, a map may.
 std::string readable_map(const LandmarkGraph& map, const fs::path& in, const fs::path& out) {
@@ -283,15 +153,11 @@ void run_convert(ConvertOptions options) {
     convert_logs(logs, out, options.map);
     return;
   }
-  for (const Foreign& one : kForeign) {
-    if (!one.is(in)) continue;
+  const DatasetFormat* const format = dataset_format(in);
+  const bool graph = in.extension() == ".g2o";  // a map, unless it is to become a recording
+  if (format != nullptr && (!graph || out.extension().empty())) {
     check_folder(out);
-    one.convert(in, out);
-    return;
-  }
-  const bool graph = in.extension() == ".g2o" || in.string().ends_with(".g2o.xz");
-  if (graph && out.extension().empty()) {
-    convert_pose_graph(in, out);
+    convert_dataset(*format, in, out);
     return;
   }
   if (in.extension() != ".graphml" && in.extension() != ".g2o" && !is_map_store(in)) {
@@ -302,14 +168,11 @@ void run_convert(ConvertOptions options) {
           "one: trussmap convert --inspect " +
           in.string() + ")");
     }
-    throw UsageError("cannot tell what " + in.string() +
-                     " is: expected a map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, "
-                     "an OptiOdom run (..._run-NN.csv, plain or .xz), DIR/NAME of ranges to radio "
-                     "beacons (NAME_DR.txt, NAME_TD.txt), DIR/NAME of places that look alike "
-                     "(NAME_Input.txt), DIR/NAME of a truck with steering and GPS (NAME_dr.mat, "
-                     "NAME_gpsx.mat), a robot on a line (dataset1.csv), a log of a tricycle's "
-                     "encoders (.txt), or a trial of PHIL's Turtlebot "
-                     "(a folder with kobuki_data.csv)");
+    std::string expected = "a map (.graphml, .g2o, .db)";
+    for (const DatasetFormat& one : dataset_formats())
+      expected += fmt::format(", {}", one.expected);
+    throw UsageError("cannot tell what " + in.string() + " is: expected " + expected +
+                     "; files plain or .xz");
   }
   convert_map(in, out, options.yaml);
 }

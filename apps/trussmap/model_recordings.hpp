@@ -8,7 +8,6 @@
 #include "trussmap/compare.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/gate.hpp"
-#include "trussmap/prepared_recordings.hpp"
 
 #include <optional>
 #include <string>

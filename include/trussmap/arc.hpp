@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // Motion of a differential-drive robot along one arc of constant curvature, and how unsure it is.
 //
 //   L, R   signed travel of the left and right wheel                       m

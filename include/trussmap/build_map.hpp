@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // A landmark map from recordings, in one call.
 //
 //   recordings, model --build_map--> BuiltMap: the map, what was left out of it, how good it is

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Wheels, wheelbase and wheel noise from recordings with truth, fixes, a survey, or a second
 // odometer's motions (loops between poses that are apart): least squares over all that was
 // measured.

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // The catalogue of physical effects: names for channel x shape, with their usual sizes, what causes
 // them and what helps. A catalogue effect is no different from a user's own with the same channel
 // and shapes.

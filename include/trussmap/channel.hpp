@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // Channels: where an effect acts. With g = sum of coefficient x shape, a row's motion becomes
 //
 //   travel            ds (1 + g)                      left, right, wheels   that wheel's (1 + g)

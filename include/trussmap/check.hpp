@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Mistakes of meaning in recordings: what can be read, and is not what it should be. Units, signs
 // and axes, names, clocks, surveys of something else. Without a fit: what one column says is
 // compared with what another one says of the same motion, so that a check costs next to nothing.

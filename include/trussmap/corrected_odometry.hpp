@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // A model on the robot: its odometry corrected row by row, as the wheels turn.
 //
 //   wheels, compass, covariates --CorrectedOdometry, by a model--> motion of the row, pose so far

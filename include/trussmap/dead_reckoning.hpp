@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // Dead reckoning between two times of a recording, and routes from landmark to landmark.
 //
 //   A o . . . . rho_A . . . robot ~~~~~ drive ~~~~> robot . . rho_B . . o B

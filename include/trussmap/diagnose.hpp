@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Which physical effect is missing?
 //
 //   fit of the present model --> score tests of all candidates --> winner, if any is significant

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Diagnose, add, fit, and again, while that is justified.
 //
 //   diagnose --> winner and its look-alikes, each fitted --> the best of them is added

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::distributed.
+//
 // Trusses that are too large for one machine: landmarks joined by measured displacements, adjusted
 // by the processes that mpirun has started, each with a part of the file, of the map and of the
 // equations (trussmap::distributed, MPI and PETSc; there only where it was configured with

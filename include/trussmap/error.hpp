@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // The two ways in which a call can fail.
 //
 //   InputError   what the user gave is wrong: one line `file:line: found, expected`; exit status 2

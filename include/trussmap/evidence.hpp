@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // What pages draw of results: gathered by further score tests and fits, which cost about as much as
 // a comparison of each model.
 //

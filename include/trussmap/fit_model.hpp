@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // A model fitted to recordings: map, poses and, where wanted, the coefficients of its effects.
 //
 //   recordings, model --fit_model--> ModelFit --> compare, diagnose, predict_held_out, pages

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Many robots of one model: what all of them have, which differ, which drift, and what that goes
 // with. From sums that are kept per robot and day, never from their recordings again.
 //

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // Gates against wrong measurements: how far off a measurement may be before it is left out. All
 // defaults stand here.
 //

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // How well a model predicts legs that no fit has seen.
 //
 //   legs, numbered through all sessions:   0 1 2 3 4 | 5 6 7 8 9 | 10 ...      blocks of five

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // The relational graph of landmarks and routes: the map as knowledge, before any mechanics.
 //
 //        s, theta, d, C, t                    a route and what its traversals say on average

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::logs.
+//
 // Bags and logs of others: MCAP, rosbag2, WPILib, Road Runner, any table; and bags out of poses and
 // recordings. Link trussmap::logs for it.
 //

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // The map builder: what exploration code calls at every landmark.
 //
 //   MapBuilder builder;                       // an elastic truss that relaxes at every arrival

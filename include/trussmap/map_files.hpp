@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Maps and pose graphs as files. The ending of a file's name says what it holds:
 //
 //   .graphml   a map, out and in without loss

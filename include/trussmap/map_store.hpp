@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::store.
+//
 // A map that grows for weeks: a map builder (map_builder.hpp) whose memory is a file.
 //
 //   MapStore store("map.db");              // made, or gone on with where it stopped

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // What is believed of a robot: its geometry, its noise, and the physical effects in its odometry.
 // model_file.hpp reads and writes it as a TOML file.
 #pragma once

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// A model as a TOML file: [robot], [noise], [[effect]] (model.hpp); a workbench's log.
+// Component trussmap::trussmap.
+//
+// A model as a TOML file: [robot], [noise], [[effect]] (model.hpp).
 #pragma once
 
 #include "trussmap/model.hpp"
-#include "trussmap/workbench.hpp"
+#include "trussmap/recording.hpp"
 
 #include <filesystem>
 #include <string>
@@ -30,16 +32,5 @@ namespace trussmap {
 [[nodiscard]] std::string format_model(const Model& model);
 
 void write_model(const std::filesystem::path& file, const Model& model);
-
-// ----------------------------------------
-// A workbench's log (workbench.hpp) as JSON, with what tells its recordings from others.
-
-[[nodiscard]] std::string format_workbench_log(const WorkbenchLog& log,
-                                               const std::vector<DrivenRecording>& recordings);
-
-/// Numbers and models read back exactly. Throws InputError: no such file, no log, or one of other
-/// recordings.
-[[nodiscard]] WorkbenchLog read_workbench_log(const std::filesystem::path& file,
-                                              const std::vector<DrivenRecording>& recordings);
 
 }  // namespace trussmap

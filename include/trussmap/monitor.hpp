@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // A monitor on the robot: does the odometry model still hold? Leg by leg, as the robot drives.
 //
 //   Monitor monitor(model, {.compass = true});

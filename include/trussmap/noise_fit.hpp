@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // How large the noise is, which part of it lasts, and what it costs: estimated from the recordings
 // that a model was fitted to.
 //

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Pages: what a command found, in one HTML file that needs nothing else, with charts. A page draws
 // results and what was gathered for it (evidence.hpp); it estimates nothing.
 //

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // The plane: angles, rotations and poses.
 //
 //   x, y      position                                   m     map frame

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // A pose graph in the plane, and its best fit from any start.
 //
 //   X = (t, theta)   pose of a vertex: position and heading                 m, rad   map frame

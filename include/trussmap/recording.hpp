@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // What a robot recorded: the wheels' travel, the compass, the landmarks it recognised, where a
 // receiver had it, and what somebody measured independently. Plain data, exactly as in the CSV
 // streams.

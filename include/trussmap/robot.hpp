@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // A robot's wheels: where they are, and how they move its body.
 #pragma once
 

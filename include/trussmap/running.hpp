@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // How calls run: on how many threads, and stopped from outside where they take long.
 //
 // Threads. The figures are the same, to the last digit, whatever their number. A BLAS that starts

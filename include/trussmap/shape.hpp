@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Shapes: what an effect goes with, as an expression over the variables of a row.
 //
 //   + - * / ^ ( )   sin cos tan abs sign min max exp log sqrt   (log is natural)   numbers

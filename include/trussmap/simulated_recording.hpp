@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // The recording of a simulated robot in one call: a mesh of landmarks, a robot of any drive that
 // tours it, effects in its odometry, and the model that its owner believes in. simulation.hpp has
 // the parts.

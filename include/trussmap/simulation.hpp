@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Recordings of a simulated robot: a mesh of landmarks, a walk on it, the true motion, and what a
 // robot with driven wheels, a compass and landmark recognition records on its way.
 //

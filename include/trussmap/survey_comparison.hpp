@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // How far a map is from an independent survey of its landmarks.
 //
 // The map's frame is arbitrary, so it is first laid over the survey: rotation and translation

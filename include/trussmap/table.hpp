@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Tables for people: aligned columns of text, and numbers with as many digits as they deserve.
 #pragma once
 

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // A path that a robot is told to drive for a calibration: segments of constant curvature, in the
 // order driven. Heading +x at the start, y to the left, angles counter-clockwise.
 //

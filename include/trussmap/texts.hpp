@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Results as the command prints them: a verdict, then tables and sentences, a line each, that end
 // with an end of line. Same input, same bytes.
 //

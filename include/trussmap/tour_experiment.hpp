@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // The elastic paper's experiment: a robot tours a mesh again and again, every method builds its map
 // from the same measurements, and after each tour the maps are compared with the truth.
 //

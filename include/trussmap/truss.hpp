@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::map.
+//
 // The stiffness method for a pin-jointed plane truss: plain structural mechanics, no robots.
 //
 //        f_j ->  o j

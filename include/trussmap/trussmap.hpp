@@ -3,13 +3,10 @@
 //
 // All of trussmap. Exploration code needs less: map_builder.hpp, or build_map.hpp.
 //
-// Five targets to link. trussmap::map has what stands in arc, build_map, channel,
-// corrected_odometry, dead_reckoning, error, fit_model, gate, landmark_map, map_builder, model,
-// monitor, noise_fit, planar, pose_graph, recording, robot, running, survey_comparison, test_path
-// and truss; trussmap::store map_store and the store of fleet, too. log_files takes trussmap::logs,
-// distributed trussmap::distributed. All the others, and effects in a model (a shape is read from
-// its text), take trussmap::trussmap. All include trussmap::map, and trussmap::logs
-// trussmap::trussmap. Find the first alone by find_package(trussmap COMPONENTS map).
+// Each header's first line names its component, the target to link. trussmap::map has what
+// exploration code needs; trussmap::store, ::trussmap, ::logs, ::datasets and ::distributed include
+// it, and the last three trussmap::trussmap, too. Effects in a model take trussmap::trussmap: a
+// shape is read from its text. Find the first alone by find_package(trussmap COMPONENTS map).
 //
 // Threads. Functions share nothing that is changed: they may run in as many threads as there are,
 // on the same recordings, models and maps. An object may be read (const calls) by several threads
@@ -24,6 +21,7 @@
 #include "trussmap/check.hpp"
 #include "trussmap/compare.hpp"
 #include "trussmap/corrected_odometry.hpp"
+#include "trussmap/datasets.hpp"
 #include "trussmap/dead_reckoning.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/discover.hpp"
@@ -46,7 +44,6 @@
 #include "trussmap/pages.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/pose_graph.hpp"
-#include "trussmap/prepared_recordings.hpp"
 #include "trussmap/recording.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/robot.hpp"

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // UMBmark: wheel diameters and wheelbase of a differential drive, from a square driven several
 // times in both directions and a tape measure (Borenstein & Feng 1996).
 //

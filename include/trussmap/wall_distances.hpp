@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Where a robot stands, by three distances to two walls at right angles: the absolute measurement
 // of Borenstein & Feng (1996, 3.1 and 5: "measuring the distance between three specific points on
 // the robot and the walls", by tape or by three ultrasonic sensors, two of which face one wall) and

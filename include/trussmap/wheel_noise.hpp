@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // How noisy each wheel is, from the end errors of one path driven many times (Chong & Kleeman
 // 1997).
 //

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Results in words that a robot's owner can act on: sizes, verdicts, advice. Sentences begin small
 // and end without a full stop; "+-" and " deg" are plain text.
 #pragma once

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // A workbench for models: effects are looked at before they are added, added, taken off again.
 //
 //   recordings, model --> TriedModel: fit, diagnosis, what each candidate would save
@@ -19,12 +21,13 @@
 // Held-out legs are the same at every step, and no fit that is judged by them sees them.
 #pragma once
 
+#include "trussmap/compare.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/noise_fit.hpp"
-#include "trussmap/prepared_recordings.hpp"
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -245,5 +248,16 @@ class Workbench {
   /// The last few, so that undoing takes no time: step and what it came to.
   std::vector<std::pair<std::size_t, TriedModel>> kept_;
 };
+
+// ----------------------------------------
+// Its log as JSON, with what tells its recordings from others.
+
+[[nodiscard]] std::string format_workbench_log(const WorkbenchLog& log,
+                                               const std::vector<DrivenRecording>& recordings);
+
+/// Numbers and models read back exactly. Throws InputError: no such file, no log, or one of other
+/// recordings.
+[[nodiscard]] WorkbenchLog read_workbench_log(const std::filesystem::path& file,
+                                              const std::vector<DrivenRecording>& recordings);
 
 }  // namespace trussmap

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
+// Component trussmap::trussmap.
+//
 // Whole files in and out: read at once, written whole or not at all. Who only writes needs
 // trussmap::map, who reads trussmap::trussmap.
 //

@@ -3,8 +3,8 @@
 #include "inputs.hpp"
 
 #include "arrays.hpp"
+#include "trussmap/compare.hpp"
 #include "trussmap/model_file.hpp"
-#include "trussmap/prepared_recordings.hpp"
 #include "trussmap/recording_files.hpp"
 
 #include <algorithm>

@@ -9,7 +9,6 @@
 #include "trussmap/diagnose.hpp"
 #include "trussmap/gate.hpp"
 #include "trussmap/model.hpp"
-#include "trussmap/prepared_recordings.hpp"
 #include "trussmap/recording.hpp"
 
 #include <cstddef>

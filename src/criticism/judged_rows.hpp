@@ -6,7 +6,7 @@
 #pragma once
 
 #include "criticism/diagnosis.hpp"
-#include "trussmap/prepared_recordings.hpp"
+#include "trussmap/compare.hpp"
 
 #include <optional>
 

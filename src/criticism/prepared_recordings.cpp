@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/prepared_recordings.hpp"
-
+#include "trussmap/compare.hpp"
 #include "trussmap/survey_comparison.hpp"
 
 #include <algorithm>

@@ -91,7 +91,7 @@ TEST(SlowConvertLog, EveryFormatLeadsToTheSameDiagnosis) {
                 .status,
             0);
   const std::string writer =
-      std::string(TRUSSMAP_SOURCE_DIR) + "/tests/io/bags/recording_as_logs.py";
+      std::string(TRUSSMAP_SOURCE_DIR) + "/tests/logs/bags/recording_as_logs.py";
   const std::string python = fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
   ASSERT_EQ(std::system(
                 (python + " -B " + writer + " " + (folder / "sim").string() + " " + folder.string())
@@ -128,7 +128,7 @@ TEST(SlowConvertLog, JoinedTablesLeadToTheDiagnosisOfTheSingleTable) {
   const fs::path folder = scratch.path();
   const std::string python = fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
   const std::string writer =
-      std::string(TRUSSMAP_SOURCE_DIR) + "/tests/io/tables/joined_layouts.py";
+      std::string(TRUSSMAP_SOURCE_DIR) + "/tests/logs/tables/joined_layouts.py";
   ASSERT_EQ(std::system((python + " -B " + writer + " " + folder.string() + " 30").c_str()), 0);
   std::vector<double> first;
   for (const char* layout : {"single", "one", "two", "three", "four", "five"}) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Maps of real robots (UTIAS MRCLAM sets 6, 1 and 4, five robots each) against the survey.
+#include "datasets/formats.hpp"
 #include "shared_data.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/dead_reckoning.hpp"
@@ -19,7 +20,7 @@
 namespace trussmap::mrclam_test {
 namespace {
 
-MrclamRecording robot(int set, int number) {
+Dataset robot(int set, int number) {
   return read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset" + std::to_string(set) + "/Robot" +
                                      std::to_string(number)));
 }
@@ -35,7 +36,7 @@ MapOnSurvey mapped(const std::vector<Recording>& recordings, const Model& model,
 }
 
 /// How far from its landmark one sighting points by the model's noise, m (rms).
-double spread_of_a_sighting(const MrclamRecording& read) {
+double spread_of_a_sighting(const Dataset& read) {
   double sum = 0.0;
   for (const Sighting& one : read.recording.sightings) {
     sum += landmark_offset(one, read.model.noise).covariance_robot.trace();
@@ -62,7 +63,7 @@ TEST(SlowMrclam, MapsBeatDeadReckoningForEveryRobot) {
   for (const int set : {6, 1, 4}) {
     for (int number = 1; number <= 5; ++number) {
       const std::string name = std::to_string(set) + "/" + std::to_string(number);
-      const MrclamRecording read = robot(set, number);
+      const Dataset read = robot(set, number);
       const MapOnSurvey elastic = mapped({read.recording}, read.model, Method::elastic);
       const MapOnSurvey adjusted = mapped({read.recording}, read.model, Method::adjustment);
       elastic_share.push_back(elastic.comparison.rigid.rms / elastic.rms_dead_reckoning);
@@ -95,7 +96,7 @@ TEST(SlowMrclam, FiveRobotsMakeOneMap) {
     std::vector<Recording> recordings;
     Model model;
     for (int number = 1; number <= 5; ++number) {
-      MrclamRecording read = robot(set, number);
+      Dataset read = robot(set, number);
       recordings.push_back(std::move(read.recording));
       model = read.model;
     }
@@ -113,12 +114,12 @@ TEST(SlowMrclam, FiveRobotsMakeOneMap) {
 /// Counted with a line-by-line script of its own, once.
 TEST(Mrclam, ConvertsAndCountsWhatItLeavesOut) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");
-  const MrclamRecording read = robot(6, 1);
+  const Dataset read = robot(6, 1);
   EXPECT_EQ(read.recording.survey.size(), 15U);
-  EXPECT_EQ(static_cast<int>(read.recording.sightings.size()) + read.robots_seen +
-                read.unknown_barcodes + read.outside_drive,
+  EXPECT_EQ(static_cast<int>(read.recording.sightings.size()) + read.figure("robots_seen") +
+                read.figure("unknown_barcodes") + read.figure("outside_drive"),
             1942);  // rows of the measurement file
-  EXPECT_EQ(static_cast<int>(read.recording.drive.rows()) + read.merged_times + 1, 61785);
+  EXPECT_EQ(static_cast<int>(read.recording.drive.rows()) + read.figure("merged_times") + 1, 61785);
   EXPECT_EQ(read.epoch, 1248444187.0);
   const Drive& drive = read.recording.drive;
   // The first velocity, 0.086 m/s and -0.398 rad/s, holds from 187.156 to 187.186 s.
@@ -129,7 +130,7 @@ TEST(Mrclam, ConvertsAndCountsWhatItLeavesOut) {
 
 TEST(Mrclam, WithoutTheGateMisreadLabelsSpoilAMap) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");
-  const MrclamRecording read = robot(4, 5);
+  const Dataset read = robot(4, 5);
   BuildMapOptions open;
   open.gate = 1e9;
   const auto rms = [&](const BuildMapOptions& options) {

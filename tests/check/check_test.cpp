@@ -4,6 +4,7 @@
 // Healthy recordings of every equipment, each spoilt by one mistake that people make.
 #include "trussmap/check.hpp"
 
+#include "datasets/formats.hpp"
 #include "shared_data.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/simulation.hpp"
@@ -444,7 +445,7 @@ TEST(Check, RealRobotsHaveNoFindingButTheExchangedLabelsOfOneSurvey) {
     for (const int robot : {1, 4}) {
       const std::string prefix =
           "data/mrclam/MRCLAM_Dataset" + std::to_string(set) + "/Robot" + std::to_string(robot);
-      const MrclamRecording read = read_mrclam(testing::shared(prefix));
+      const Dataset read = read_mrclam(testing::shared(prefix));
       const std::vector<CheckFinding> findings = check_recordings({read.recording}, &read.model);
       if (set != 1) {
         EXPECT_TRUE(findings.empty()) << prefix << "\n" << text_of(findings);

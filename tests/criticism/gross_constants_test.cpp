@@ -7,9 +7,9 @@
 #include "driven.hpp"
 #include "shared_data.hpp"
 #include "trussmap/catalogue.hpp"
+#include "trussmap/compare.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/model_file.hpp"
-#include "trussmap/prepared_recordings.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/simulated_recording.hpp"
 

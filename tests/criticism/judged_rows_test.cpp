@@ -5,7 +5,6 @@
 #include "trussmap/catalogue.hpp"
 #include "trussmap/compare.hpp"
 #include "trussmap/discover.hpp"
-#include "trussmap/prepared_recordings.hpp"
 #include "trussmap/wording.hpp"
 
 #include <cmath>

@@ -7,9 +7,9 @@
 #include "criticism/score_test.hpp"
 #include "driven.hpp"
 #include "trussmap/catalogue.hpp"
+#include "trussmap/compare.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/evidence.hpp"
-#include "trussmap/prepared_recordings.hpp"
 #include "trussmap/simulated_recording.hpp"
 #include "trussmap/workbench.hpp"
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What real robots lack (UTIAS MRCLAM set 6), from landmarks alone, judged by the motion capture.
+#include "datasets/formats.hpp"
 #include "driven.hpp"
 #include "shared_data.hpp"
 #include "trussmap/discover.hpp"
@@ -67,7 +68,7 @@ double error_after(const std::vector<TimedPose>& poses, const std::vector<TruthR
 
 TEST(SlowMrclamDiscovery, FindsDelayAndLossInArcsAndDeadReckoningGetsBetter) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");
-  const MrclamRecording read = read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset6/Robot5"));
+  const Dataset read = read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset6/Robot5"));
   DiscoverOptions options;
   options.diagnosis.fit.use_truth = false;
   options.diagnosis.fit.gate = 16.0;

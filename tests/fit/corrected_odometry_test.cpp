@@ -4,6 +4,7 @@
 // A model's odometry row by row, against the same reckoned afterwards.
 #include "trussmap/corrected_odometry.hpp"
 
+#include "datasets/formats.hpp"
 #include "drive/causal_variables.hpp"
 #include "driven.hpp"
 #include "estimation/simulated_recordings.hpp"
@@ -201,7 +202,7 @@ TEST(CorrectedOdometry, RatesAreLateAndNothingElse) {
 
 TEST(CorrectedOdometry, RatesOfARealRobotAreLateAndNothingElse) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");
-  const MrclamRecording read = read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset6/Robot1"));
+  const Dataset read = read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset6/Robot1"));
   expect_late_only(testing::driven(read.recording), read.model.robot, Channel::travel, "speed",
                    -0.1);
   expect_late_only(testing::driven(read.recording), read.model.robot, Channel::advance, "arc_angle",

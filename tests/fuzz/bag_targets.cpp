@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "fuzz/targets.hpp"
-#include "io/logs/cdr.hpp"
-#include "io/logs/message_log.hpp"
+#include "logs/cdr.hpp"
+#include "logs/message_log.hpp"
 #include "trussmap/error.hpp"
 
 #include <filesystem>

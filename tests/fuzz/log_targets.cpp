@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "fuzz/targets.hpp"
-#include "io/logs/message_log.hpp"
+#include "logs/message_log.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/log_files.hpp"
 

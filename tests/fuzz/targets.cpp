@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fuzz/targets.hpp"
 
+#include "datasets/formats.hpp"
 #include "trussmap/check.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/map_files.hpp"

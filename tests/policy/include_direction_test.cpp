@@ -90,7 +90,6 @@ const std::map<std::string, std::string> kDoors = {{"running", "parallel"},
                                                    {"workbench", "workbench"},
                                                    {"evidence", "criticism"},
                                                    {"fleet", "fleet"},
-                                                   {"prepared_recordings", "criticism"},
                                                    {"wording", "wording"},
                                                    {"check", "check"},
                                                    {"simulation", "simulation"},
@@ -99,7 +98,8 @@ const std::map<std::string, std::string> kDoors = {{"running", "parallel"},
                                                    {"pages", "report"},
                                                    {"texts", "report"},
                                                    {"table", "text"},
-                                                   {"log_files", "io"},
+                                                   {"log_files", "logs"},
+                                                   {"datasets", "datasets"},
                                                    {"map_files", "io"},
                                                    {"model_file", "io"},
                                                    {"recording_files", "io"},
@@ -305,7 +305,7 @@ TEST(IncludeDirection, WrongWaysAreFound) {
   EXPECT_TRUE(wrong("src/map/x.cpp", "\"estimation/recording_problem.hpp\""));
   EXPECT_TRUE(wrong("src/truss/x.cpp", "\"trussmap/recording.hpp\""));
   EXPECT_TRUE(wrong("src/simulation/x.cpp", "\"trussmap/arc.hpp\""));
-  EXPECT_TRUE(wrong("src/io/x.cpp", "\"number_rows.hpp\""));
+  EXPECT_TRUE(wrong("src/datasets/x.cpp", "\"number_rows.hpp\""));
   EXPECT_TRUE(wrong("src/map/x.cpp", "\"trussmap/nowhere.hpp\""));
   EXPECT_TRUE(wrong("src/nowhere/x.cpp", "\"trussmap/planar.hpp\""));
   EXPECT_FALSE(wrong("src/map/x.cpp", "\"trussmap/truss.hpp\""));

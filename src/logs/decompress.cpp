@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "logs/decompress.hpp"
+
+#include "files/present.hpp"
+#include "files/temporary.hpp"
+#include "io/read_limits.hpp"
+#include "logs/byte_reader.hpp"
+#include "logs/message_log.hpp"
+#include "trussmap/error.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <lz4frame.h>
+#include <system_error>
+#include <vector>
+#include <zstd.h>
+
+namespace trussmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kFirst = std::uint64_t{4} << 20U;  // bytes made without a proof
+constexpr std::uint64_t kUsualGrowth = 16;                 // times the compressed size
+constexpr std::string_view kZstdMagic("\x28\xB5\x2F\xFD", 4);
+
+// Recordings of cameras in the dark shrink to a hundredth.
+constexpr Growth kOfBag{1024, 200};
+
+/// What one call of a library made of how much.
+struct Progress {
+  std::size_t read = 0;
+  std::size_t written = 0;
+  bool at_end = false;  // of a frame
+};
+
+}  // namespace
+
+struct Decompressor::Contexts {
+  LZ4F_dctx* lz4 = nullptr;
+  ZSTD_DCtx* zstd = nullptr;
+
+  Contexts() = default;
+  ~Contexts() {
+    LZ4F_freeDecompressionContext(lz4);
+    ZSTD_freeDCtx(zstd);
+  }
+  Contexts(const Contexts&) = delete;
+  Contexts& operator=(const Contexts&) = delete;
+};
+
+Decompressor::Decompressor() : contexts_(std::make_unique<Contexts>()) {}
+Decompressor::~Decompressor() = default;
+
+template <typename Step>
+std::string_view Decompressor::grown(std::string_view bytes, std::uint64_t most, const Step& step) {
+  const std::uint64_t first =
+      std::min(most, std::max<std::uint64_t>(kFirst, kUsualGrowth * bytes.size()));
+  if (buffer_.size() < first) buffer_.resize(static_cast<std::size_t>(first));
+  std::size_t written = 0;
+  bool at_end = true;
+  char beyond = 0;  // takes what must not be there
+  while (!bytes.empty() || !at_end) {
+    const std::size_t room =
+        static_cast<std::size_t>(std::min<std::uint64_t>(most, buffer_.size()) - written);
+    const Progress made = room > 0 ? step(bytes, buffer_.data() + written, room)
+                                   : step(bytes, &beyond, std::size_t{1});
+    bytes.remove_prefix(made.read);
+    at_end = made.at_end;
+    if (room == 0 && made.written > 0) {
+      throw DecompressError("its data have more than " + std::to_string(most) +
+                            " bytes once decompressed");
+    }
+    written += made.written;
+    if (made.read == 0 && made.written == 0 && !at_end) {
+      throw DecompressError("its compressed data end too soon");
+    }
+    if (written == buffer_.size() && written < most) {
+      buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(most, 2 * written)));
+    }
+  }
+  return std::string_view(buffer_).substr(0, written);
+}
+
+std::string_view Decompressor::lz4(std::string_view bytes, std::uint64_t size) {
+  if (contexts_->lz4 == nullptr &&
+      LZ4F_isError(LZ4F_createDecompressionContext(&contexts_->lz4, LZ4F_VERSION)) != 0) {
+    throw std::bad_alloc();
+  }
+  LZ4F_resetDecompressionContext(contexts_->lz4);
+  const std::string_view made =
+      grown(bytes, size, [this](std::string_view from, char* to, std::size_t room) {
+        Progress progress{from.size(), room, false};
+        const std::size_t left = LZ4F_decompress(contexts_->lz4, to, &progress.written, from.data(),
+                                                 &progress.read, nullptr);
+        if (LZ4F_isError(left) != 0) {
+          throw DecompressError(std::string("its lz4 data are damaged (") +
+                                LZ4F_getErrorName(left) + ")");
+        }
+        progress.at_end = left == 0;
+        return progress;
+      });
+  if (made.size() == size) return made;
+  throw DecompressError("its data have " + std::to_string(made.size()) +
+                        " bytes once decompressed, expected " + std::to_string(size));
+}
+
+std::string_view Decompressor::zstd_of_any_size(std::string_view bytes, std::uint64_t most) {
+  if (contexts_->zstd == nullptr) contexts_->zstd = ZSTD_createDCtx();
+  if (contexts_->zstd == nullptr) throw std::bad_alloc();
+  ZSTD_DCtx_reset(contexts_->zstd, ZSTD_reset_session_only);
+  return grown(bytes, most, [this](std::string_view from, char* to, std::size_t room) {
+    ZSTD_inBuffer in{from.data(), from.size(), 0};
+    ZSTD_outBuffer out{to, room, 0};
+    const std::size_t left = ZSTD_decompressStream(contexts_->zstd, &out, &in);
+    if (ZSTD_isError(left) != 0) {
+      throw DecompressError(std::string("its zstd data are damaged (") + ZSTD_getErrorName(left) +
+                            ")");
+    }
+    return Progress{in.pos, out.pos, left == 0};
+  });
+}
+
+std::string_view Decompressor::zstd(std::string_view bytes, std::uint64_t size) {
+  const std::string_view made = zstd_of_any_size(bytes, size);
+  if (made.size() == size) return made;
+  throw DecompressError("its data have " + std::to_string(made.size()) +
+                        " bytes once decompressed, expected " + std::to_string(size));
+}
+
+bool is_zstd(std::string_view bytes) {
+  return bytes.starts_with(kZstdMagic);
+}
+
+struct DecompressedFile::Held {
+  Descriptor descriptor;  // locked: no leftover of a killed run
+};
+
+namespace {
+
+/// Writes what `file` decompresses to; whether it is whole.
+bool decompress_to(const fs::path& file, int descriptor) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw unreadable(file.string());
+  const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),
+                                                                        &ZSTD_freeDCtx);
+  if (context == nullptr) throw std::bad_alloc();
+  std::error_code ignored;
+  const std::uintmax_t size = fs::file_size(file, ignored);
+  const std::size_t most = most_grown(kOfBag, ignored ? 0 : static_cast<std::size_t>(size));
+  std::string from(ZSTD_DStreamInSize(), '\0');
+  std::string to(ZSTD_DStreamOutSize(), '\0');
+  std::uint64_t before = 0;
+  std::uint64_t written = 0;
+  bool at_end = false;
+  while (in.read(from.data(), static_cast<std::streamsize>(from.size())), in.gcount() > 0) {
+    ZSTD_inBuffer piece{from.data(), static_cast<std::size_t>(in.gcount()), 0};
+    bool full = false;
+    while (piece.pos < piece.size || full) {
+      ZSTD_outBuffer made{to.data(), to.size(), 0};
+      const std::size_t left = ZSTD_decompressStream(context.get(), &made, &piece);
+      if (ZSTD_isError(left) != 0) {
+        fail_at(file.string(), before + piece.pos,
+                std::string("the zstd data are damaged (") + ZSTD_getErrorName(left) + ")");
+      }
+      at_end = left == 0;
+      full = made.pos == made.size && !at_end;
+      written += made.pos;
+      if (written > most) {
+        throw InputError(file.string(), 0, "the zstd data grow to " + more_than(kOfBag));
+      }
+      if (!write_all(descriptor, std::string_view(to).substr(0, made.pos), false)) {
+        throw InputError(file.string(), 0,
+                         "cannot be decompressed into the folder of temporary files (" +
+                             std::system_category().message(errno) + ")");
+      }
+    }
+    before += piece.size;
+  }
+  if (in.bad()) throw InputError(file.string(), 0, "cannot be read to its end");
+  return at_end;
+}
+
+}  // namespace
+
+DecompressedFile::DecompressedFile(const fs::path& file) : held_(std::make_unique<Held>()) {
+  const fs::path folder = fs::temp_directory_path();
+  remove_leftovers(folder);
+  constexpr int kTries = 10;
+  for (int k = 0; k < kTries && !held_->descriptor.valid(); ++k) {
+    path_ = temporary_for(folder / file.stem());
+    held_->descriptor = make_temporary_file(path_);
+  }
+  if (!held_->descriptor.valid()) {
+    throw InputError(file.string(), 0,
+                     "cannot be decompressed, no temporary file can be made in " + folder.string());
+  }
+  try {
+    if (!decompress_to(file, held_->descriptor.number())) {
+      cut_off_ = "the zstd data end too soon";
+    }
+  } catch (...) {
+    remove();
+    throw;
+  }
+}
+
+DecompressedFile::~DecompressedFile() {
+  remove();
+}
+
+void DecompressedFile::remove() noexcept {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove(path_, ignored);
+}
+
+}  // namespace trussmap
