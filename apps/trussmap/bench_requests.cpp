@@ -117,8 +117,10 @@ LocalReply preview(const json& asked, const BenchView& view) {
 
 LocalReply best(const json& asked, const BenchView& view) {
   const std::size_t finding = finding_of(asked, view);
+  std::optional<std::size_t> only;
+  if (asked.contains("only")) only = asked.at("only").get<std::size_t>();
   const json body = {
-      {"values", view.now.best_near(finding, asked.at("values").get<std::vector<double>>())}};
+      {"values", view.now.best_near(finding, asked.at("values").get<std::vector<double>>(), only)}};
   return {.body = body.dump()};
 }
 
@@ -248,7 +250,8 @@ LocalReply answer_post(const LocalRequest& request, BenchWork& work) {
   if (request.path == "best") return best(asked, *view);
   if (request.path == "explain") return explain(asked, *view);
   if (request.path == "shown") return shown_effect(asked, *view);
-  if (request.path == "legs") return {.body = selection_json(view->now, legs_of(asked, *view))};
+  if (request.path == "legs")
+    return {.body = selection_json(view->now, view->log, legs_of(asked, *view))};
   if (request.path == "noise") return with_noise(asked, *view);
   if (request.path == "step") return step(asked, work, *view);
   if (request.path == "stop") {

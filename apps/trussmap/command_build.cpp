@@ -184,7 +184,7 @@ void run_build(const BuildOptions& options) {
   if (!options.csv.empty()) files.emplace_back(options.csv, format_positions(built.map));
   if (options.page.wanted()) {
     const std::string subject = subject_of(options.recordings, options.model) + ", " + by;
-    add_page(files, map_page(built, subject), options.page);
+    add_page(files, map_page(built, subject), options.page, recordings);
   }
   files.write();
   progress.end();

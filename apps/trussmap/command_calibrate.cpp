@@ -188,7 +188,7 @@ void run_calibrate(const CalibrateOptions& options) {
     const Page page = truth_page({found, held.nominal, held.calibrated, calibration_verdict(held)},
                                  subject_of(options.recordings, options.model));
     add_page(files, with_drive(with_constants(page, constants), model.robot, recordings),
-             options.page);
+             options.page, recordings);
   }
   files.write();
   progress.end();

@@ -9,6 +9,7 @@
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
+#include "tolerance_option.hpp"
 #include "trussmap/compare.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/pages.hpp"
@@ -28,6 +29,7 @@ struct CompareCommand {
   ModelRecordingsOptions input;
   std::size_t worst = 5;
   PageOptions page;
+  std::string tolerance;
 };
 
 ordered_json legs_json(const Comparison& result) {
@@ -136,26 +138,32 @@ void run_compare(const CompareCommand& options) {
   progress.next();
   const Comparison result = compare(input, fit, how);
   const std::vector<NoiseBudget> budget = noise_budget(input.recordings, input.model);
+  const std::optional<Tolerance> tolerance = judged(options.tolerance, result.held_out);
   Files files;
   if (!options.input.json.empty()) {
     ordered_json report = json_of(result);
     report["noise_budget"] = budget_json(budget);
     report["sightings_used"] = sightings_json(result.sightings);
     report["notes"] = input.notes;
+    add_tolerance(tolerance, report);
     files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   if (options.page.wanted()) {
-    add_page(files,
-             with_drive(comparison_page(evidence_of(fit, result),
-                                        subject_of(options.input.recordings, options.input.model)),
-                        input.model.robot, input.recordings),
-             options.page);
+    add_page(
+        files,
+        with_tolerance(
+            with_drive(comparison_page(evidence_of(fit, result),
+                                       subject_of(options.input.recordings, options.input.model)),
+                       input.model.robot, input.recordings),
+            tolerance),
+        options.page, input.recordings);
   }
   files.write();
   progress.end();
   fmt::print("{}{}",
              comparison_text(result, input.model.noise, budget, options.worst, style_of(stdout)),
              notes_text(input.notes));
+  end_by(tolerance);
 }
 
 }  // namespace
@@ -166,6 +174,7 @@ void setup_compare(const Command& app) {
       "compare", "Compare a model with recordings: is it consistent, and where does it fail?");
   add_model_recordings(command, options->input);
   command.add_option("--worst", options->worst, "Legs and routes to list").capture_default_str();
+  add_tolerance(command, options->tolerance);
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
   command.footer(

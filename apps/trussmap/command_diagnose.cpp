@@ -9,6 +9,7 @@
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
+#include "tolerance_option.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/pages.hpp"
@@ -28,6 +29,7 @@ struct DiagnoseCommand {
   ModelRecordingsOptions input;
   std::size_t list = 8;
   PageOptions page;
+  std::string tolerance;
 };
 
 ordered_json json_of(const Finding& finding) {
@@ -113,6 +115,7 @@ void run_diagnose(const DiagnoseCommand& options) {
       noise_budget(input.recordings, result.under ? result.under->fit.model : fit.model);
   const RobotConstants constants =
       with_velocity_variances(robot_constants(result, fit.model), input.recordings, fit.model);
+  const std::optional<Tolerance> tolerance = judged(options.tolerance, result.held_out);
   Files files;
   if (!options.input.json.empty()) {
     ordered_json report = json_of(result);
@@ -120,6 +123,7 @@ void run_diagnose(const DiagnoseCommand& options) {
     report["noise_budget"] = budget_json(budget);
     report["sightings_used"] = sightings_json(result.sightings);
     report["notes"] = input.notes;
+    add_tolerance(tolerance, report);
     files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   progress.next();
@@ -127,13 +131,16 @@ void run_diagnose(const DiagnoseCommand& options) {
     const Page page = diagnosis_page(result, evidence_of(input.recordings, fit, result, how),
                                      subject_of(options.input.recordings, options.input.model));
     add_page(files,
-             with_drive(with_constants(page, constants), input.model.robot, input.recordings),
-             options.page);
+             with_tolerance(
+                 with_drive(with_constants(page, constants), input.model.robot, input.recordings),
+                 tolerance),
+             options.page, input.recordings);
   }
   files.write();
   progress.end();
   fmt::print("{}{}{}", diagnosis_text(result, budget, options.list, style_of(stdout)),
              constants_text(constants, style_of(stdout)), notes_text(input.notes));
+  end_by(tolerance);
 }
 
 }  // namespace
@@ -145,6 +152,7 @@ void setup_diagnose(const Command& app) {
   add_model_recordings(command, options->input);
   add_stated_noise(command, options->input);
   command.add_option("--list", options->list, "Candidates to list").capture_default_str();
+  add_tolerance(command, options->tolerance);
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
   command.footer(

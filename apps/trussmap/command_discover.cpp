@@ -9,6 +9,7 @@
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
+#include "tolerance_option.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/model_file.hpp"
@@ -30,6 +31,7 @@ struct DiscoverCommand {
   std::string out;
   std::size_t most = 6;
   PageOptions page;
+  std::string tolerance;
 };
 
 ordered_json optional_json(const std::optional<double>& value) {
@@ -116,6 +118,7 @@ void run_discover(const DiscoverCommand& options) {
   const std::vector<NoiseBudget> budget = noise_budget(input.recordings, result.found.model);
   const RobotConstants constants = with_velocity_variances(robot_constants(result, input.model),
                                                            input.recordings, result.found.model);
+  const std::optional<Tolerance> tolerance = judged(options.tolerance, result.last.held_out);
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.found.model));
   if (!options.input.json.empty()) {
@@ -124,19 +127,23 @@ void run_discover(const DiscoverCommand& options) {
     report["noise_budget"] = budget_json(budget);
     report["sightings_used"] = sightings_json(result.sightings);
     report["notes"] = input.notes;
+    add_tolerance(tolerance, report);
     files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   if (options.page.wanted()) {
     const Page page = discovery_page(result, evidence_of(input.recordings, result, how.diagnosis),
                                      subject_of(options.input.recordings, options.input.model));
     add_page(files,
-             with_drive(with_constants(page, constants), input.model.robot, input.recordings),
-             options.page);
+             with_tolerance(
+                 with_drive(with_constants(page, constants), input.model.robot, input.recordings),
+                 tolerance),
+             options.page, input.recordings);
   }
   files.write();
   told.end();
   fmt::print("{}{}{}", discovery_text(result, input.model.noise, budget, style_of(stdout)),
              constants_text(constants, style_of(stdout)), notes_text(input.notes));
+  end_by(tolerance);
 }
 
 }  // namespace
@@ -149,6 +156,7 @@ void setup_discover(const Command& app) {
   add_stated_noise(command, options->input);
   command.add_option("--out", options->out, "Write the model found (TOML)").type_name("FILE");
   command.add_option("--most", options->most, "Effects to add at most").capture_default_str();
+  add_tolerance(command, options->tolerance);
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
   command.footer(

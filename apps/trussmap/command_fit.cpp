@@ -9,6 +9,7 @@
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
+#include "tolerance_option.hpp"
 #include "trussmap/compare.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/model_file.hpp"
@@ -31,6 +32,7 @@ struct FitCommand {
   std::string out;
   bool noise = false;
   PageOptions page;
+  std::string tolerance;
 };
 
 /// The model without effects and as fitted, side by side.
@@ -101,6 +103,7 @@ void run_fit(const FitCommand& options) {
   const EffectGain result = fit_both(input, model, options, progress);
   const RobotConstants constants = with_velocity_variances(
       robot_constants(input.model, result.with), input.recordings, result.with.model);
+  const std::optional<Tolerance> tolerance = judged(options.tolerance, result.held_out_with);
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.with.model));
   if (!options.input.json.empty()) {
@@ -108,6 +111,7 @@ void run_fit(const FitCommand& options) {
     add_constants(constants, report);
     if (noise) report["noise"] = noise_json(*noise);
     report["notes"] = input.notes;
+    add_tolerance(tolerance, report);
     files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   progress.next();
@@ -116,14 +120,16 @@ void run_fit(const FitCommand& options) {
     if (noise) evidence.noise = in_words(*noise);
     const std::string subject = subject_of(options.input.recordings, options.input.model);
     add_page(files,
-             with_drive(with_constants(fit_page(evidence, subject), constants), input.model.robot,
-                        input.recordings),
-             options.page);
+             with_tolerance(with_drive(with_constants(fit_page(evidence, subject), constants),
+                                       input.model.robot, input.recordings),
+                            tolerance),
+             options.page, input.recordings);
   }
   files.write();
   progress.end();
   fmt::print("{}{}{}", fit_text(result, noise, style_of(stdout)),
              constants_text(constants, style_of(stdout)), notes_text(input.notes));
+  end_by(tolerance);
 }
 
 }  // namespace
@@ -137,6 +143,7 @@ void setup_fit(const Command& app) {
       .type_name("FILE");
   command.add_flag("--noise", options->noise,
                    "Estimate the noise, too: the size of every source, and which part of it lasts");
+  add_tolerance(command, options->tolerance);
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
   command.footer(

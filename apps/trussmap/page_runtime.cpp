@@ -2,6 +2,16 @@
 // SPDX-License-Identifier: MIT
 #include "page_runtime.hpp"
 
+#include "call_again.hpp"
+#include "trussmap/recording_files.hpp"
+
+#include <charconv>
+#include <cstdlib>
+#include <ctime>
+#include <string_view>
+
+#include <fmt/format.h>
+
 // The files as they are, each between two names.
 #define TRUSSMAP_EMBED(name, file)                                               \
   __asm__(".pushsection .rodata\n.global " #name "\n" #name ":\n.incbin \"" file \
@@ -46,6 +56,25 @@ void add_plots_option(const Command& command, PageOptions& options) {
       .type_name("DIR");
 }
 
+namespace {
+
+/// The day it is, or that SOURCE_DATE_EPOCH states, for files that are the same whenever they are
+/// made; UTC.
+std::string day() {
+  std::time_t now = std::time(nullptr);
+  if (const char* stated = std::getenv("SOURCE_DATE_EPOCH")) {
+    long long seconds = 0;
+    const std::string_view text = stated;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), seconds);
+    if (read.ec == std::errc()) now = static_cast<std::time_t>(seconds);
+  }
+  std::tm parts{};
+  if (gmtime_r(&now, &parts) == nullptr) return "";
+  return fmt::format("{:04}-{:02}-{:02}", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday);
+}
+
+}  // namespace
+
 void Files::add_plot(const std::string& folder, const std::string& name, std::string svg) {
   folders.push_back({folder, {{name, std::move(svg)}}, {}});
 }
@@ -59,8 +88,15 @@ std::vector<std::filesystem::path> Files::paths() const {
   return all;
 }
 
-void add_page(Files& files, const Page& page, const PageOptions& options) {
-  if (!options.html.empty()) files.emplace_back(options.html, render_page(page, page_runtime()));
+void add_page(Files& files, const Page& page, const PageOptions& options,
+              const std::vector<DrivenRecording>& recordings) {
+  if (!options.html.empty()) {
+    Provenance from{call_with({}), TRUSSMAP_VERSION, day()};
+    for (const DrivenRecording& one : recordings) {
+      from.data.emplace_back(one.name, fingerprint(one));
+    }
+    files.emplace_back(options.html, render_page(with_provenance(page, from), page_runtime()));
+  }
   if (options.plots.empty()) return;
   FolderOfFiles& plots = files.folders.emplace_back();
   plots.folder = options.plots;

@@ -6,6 +6,7 @@
 
 #include "command_line.hpp"
 #include "trussmap/pages.hpp"
+#include "trussmap/robot.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <filesystem>
@@ -45,8 +46,10 @@ struct Files {
   void write() const { write_files(single, folders); }
 };
 
-/// The page, and its charts as pictures in DIR, among the files that a command writes.
-void add_page(Files& files, const Page& page, const PageOptions& options);
+/// The page, and its charts as pictures in DIR, among the files that a command writes. At its foot
+/// stand the command, the version, the day, and what tells the recordings from others.
+void add_page(Files& files, const Page& page, const PageOptions& options,
+              const std::vector<DrivenRecording>& recordings = {});
 
 /// "rec1, rec2 (and 3 more), model.toml".
 [[nodiscard]] std::string subject_of(const std::vector<std::string>& recordings,

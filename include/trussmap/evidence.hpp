@@ -21,6 +21,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 namespace trussmap {
 
 struct ResponseBin {
@@ -94,6 +96,9 @@ struct FitEvidence {
   ModelEvidence with;
   std::vector<EffectEvidence> effects;
   std::string noise = {};  ///< in words, where it was estimated and is other than stated
+  /// Of the effects' coefficients, in their order; 0 beside one that was not estimated; empty where
+  /// there are fewer than two.
+  Eigen::MatrixXd correlation = {};
 };
 
 struct DiagnosisEvidence {

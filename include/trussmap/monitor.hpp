@@ -102,8 +102,9 @@ struct FoundEffect {
   Effect effect;       ///< with its coefficient
   double sd = 0.0;     ///< of the coefficient
   double share = 0.0;  ///< of the evidence, 0 to 1
-  long leg = 0;        ///< the first leg with it, counted from 1; the likeliest one
-  long earliest = 0;   ///< between these two it began, as far as the evidence goes (90 %)
+  /// The first leg with it, counted from 1: the likeliest one, of an alarm none after it.
+  long leg = 0;
+  long earliest = 0;  ///< between these two it began, as far as the evidence goes (90 %)
   long latest = 0;
   std::vector<MonitorLookAlike> look_alikes = {};  ///< the one with most evidence first
 };

@@ -20,10 +20,12 @@
 #include "trussmap/umbmark.hpp"
 #include "trussmap/wheel_noise.hpp"
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace trussmap {
@@ -122,6 +124,30 @@ struct TruthCalibration {
 [[nodiscard]] Page with_drive(const Page& page, const Robot& robot,
                               const std::vector<DrivenRecording>& recordings);
 
+/// How far off legs that no fit has seen may end, and how far they do.
+struct Tolerance {
+  double most = 0.0;         ///< m, root mean square
+  double arrival_rms = 0.0;  ///< m (HeldOutMetrics)
+  std::size_t legs = 0;      ///< held out, of which that is
+
+  [[nodiscard]] bool passed() const { return arrival_rms <= most; }
+};
+/// The page with that above all else.
+[[nodiscard]] Page with_tolerance(const Page& page, const Tolerance& tolerance);
+/// "passed: legs end 12 mm off (root mean square of 43 held out), within the tolerance of 20 mm".
+[[nodiscard]] std::string in_words(const Tolerance& tolerance);
+
+/// How a page came about, for its foot.
+struct Provenance {
+  std::string command;  ///< the line that made it, quoted for a shell
+  std::string version;  ///< of trussmap
+  std::string date;     ///< YYYY-MM-DD; empty: not told
+  /// Names of recordings, and what tells each from any other (fingerprint, recording_files.hpp).
+  std::vector<std::pair<std::string, std::string>> data = {};
+};
+/// The page with that at its foot, and how to cite.
+[[nodiscard]] Page with_provenance(const Page& page, const Provenance& provenance);
+
 /// The page with the constants to paste; without any the page as it is.
 [[nodiscard]] Page with_constants(const Page& page, const RobotConstants& constants);
 
@@ -133,7 +159,7 @@ struct TruthCalibration {
 [[nodiscard]] std::string workbench_json(const TriedModel& now, const WorkbenchLog& log,
                                          const std::string& subject, bool provisional = false);
 /// Of that, what the page shows when these legs are chosen, by their numbers, ascending.
-[[nodiscard]] std::string selection_json(const TriedModel& now,
+[[nodiscard]] std::string selection_json(const TriedModel& now, const WorkbenchLog& log,
                                          const std::vector<std::size_t>& legs);
 /// The same of an effect that is looked at: "+ name" beside the present model's error `arrival_rms`
 /// [m]. Of one that the model has, without figures of what it would save.

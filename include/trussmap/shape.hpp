@@ -6,6 +6,7 @@
 // Shapes: what an effect goes with, as an expression over the variables of a row.
 //
 //   + - * / ^ ( )   sin cos tan abs sign min max exp log sqrt   (log is natural)   numbers
+//   < > <= >=       1 where it holds, else 0; in brackets beside * and the like: "(speed>0.5)*t"
 //
 //   "sin(heading)", "payload_kg", "max(0, speed-0.5)", "exp(-((x-12)^2+(y-9)^2)/(2*3^2))"
 //
@@ -55,8 +56,9 @@ class Shape {
   [[nodiscard]] bool speaks_of(std::string_view variable) const;
 
   /// What is subtracted from a variable, under the variable's name (in "x-12" the place x = 12, in
-  /// "speed-0.5" the threshold speed = 0.5, in "t-600" a time), and what is squared in a shape of x
-  /// and y (the radius r); in the order of the text.
+  /// "speed-0.5" the threshold speed = 0.5, in "t-600" a time), what it is compared with
+  /// ("speed>0.5"), and what is squared in a shape of x and y (the radius r); in the order of the
+  /// text.
   [[nodiscard]] const std::vector<ShapeParameter>& parameters() const;
   /// The first of this name.
   [[nodiscard]] std::optional<double> parameter(std::string_view name) const;

@@ -78,6 +78,7 @@ struct EffectParameter {
   double step = 0.0;  ///< between values that are worth telling apart
   double least = 0.0;
   double most = 0.0;
+  std::string unit = {};  ///< of its value, "" = none
 };
 
 /// Chance of as much as a finding's score, were all noise `factor` times as large as it is believed
@@ -130,9 +131,10 @@ class TriedModel {
   /// The finding's effect with other values of these; without coefficients. Throws
   /// std::invalid_argument where they are not as many.
   [[nodiscard]] Effect moved(std::size_t finding, const std::vector<double>& values) const;
-  /// The values near these that explain the most.
+  /// The values near these that explain the most; `only`: that one moves, the others stay.
   [[nodiscard]] std::vector<double> best_near(std::size_t finding,
-                                              const std::vector<double>& values) const;
+                                              const std::vector<double>& values,
+                                              std::optional<std::size_t> only = {}) const;
 
   /// Throws std::invalid_argument, in a sentence, on an effect that cannot be applied to these
   /// recordings (a variable that they do not have, a value that is not finite).

@@ -247,6 +247,22 @@ ComparisonEvidence evidence_of(const ModelFit& fit, const Comparison& comparison
           trend_evidence(comparison, *fit.state, ScoreTest(*fit.state))};
 }
 
+namespace {
+
+Eigen::MatrixXd correlation_of(const ModelFit& fit) {
+  Eigen::Index count = 0;
+  for (const EffectEstimate& one : fit.effects) {
+    count += static_cast<Eigen::Index>(one.effect.coefficients.size());
+  }
+  const Eigen::MatrixXd& covariance = fit.state->adjustment.coefficient_covariance;
+  if (count < 2 || covariance.rows() != count) return {};
+  const Eigen::ArrayXd sd = covariance.diagonal().array().max(0.0).sqrt();
+  const Eigen::ArrayXd scale = (sd > 0.0).select(1.0 / sd, 0.0);
+  return scale.matrix().asDiagonal() * covariance * scale.matrix().asDiagonal();
+}
+
+}  // namespace
+
 FitEvidence evidence_of(const std::vector<DrivenRecording>& recordings, const EffectGain& gain,
                         const CompareOptions& options) {
   FitEvidence evidence;
@@ -256,6 +272,7 @@ FitEvidence evidence_of(const std::vector<DrivenRecording>& recordings, const Ef
   std::vector<Seen> effects;
   for (const EffectEstimate& one : gain.with.effects) effects.push_back({one, {}});
   evidence.effects = effect_evidence(*gain.without.state, &gain.with, effects);
+  evidence.correlation = correlation_of(gain.with);
   return evidence;
 }
 

@@ -23,7 +23,7 @@ double sign(double value) {
 }
 
 constexpr const char* kLanguage =
-    "+ - * / ^ ( ), numbers, variables, and sin cos tan abs sign min max exp log sqrt";
+    "+ - * / ^ ( ) < >, numbers, variables, and sin cos tan abs sign min max exp log sqrt";
 
 [[noreturn]] void refuse(const std::string& expression, const std::string& why) {
   throw std::invalid_argument(fmt::format("shape \"{}\" {}", expression, why));
@@ -56,15 +56,17 @@ std::string with_squares(const std::string& expression) {
   return text;
 }
 
-/// muParser knows more than a shape may have: assignments, comparisons, "? :", lists.
+/// muParser knows more than a shape may have: assignments, "? :", lists.
 void check_syntax(const std::string& expression) {
   std::vector<bool> lists;  // per open parenthesis: of min or max
   std::string word;         // the last
+  char before = ' ';
   for (const char c : expression) {
     const bool name = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
     if (c == '(') lists.push_back(word == "min" || word == "max");
     if (c == ')' && !lists.empty()) lists.pop_back();
-    const bool known = name || std::string_view("+-*/^() ").find(c) != std::string_view::npos ||
+    const bool known = name || std::string_view("+-*/^()<> ").find(c) != std::string_view::npos ||
+                       (c == '=' && (before == '<' || before == '>')) ||
                        (c == ',' && !lists.empty() && lists.back());
     if (!known) {
       refuse(expression,
@@ -77,6 +79,7 @@ void check_syntax(const std::string& expression) {
     } else {
       word.clear();
     }
+    before = c;
   }
 }
 
@@ -153,6 +156,8 @@ class ParameterReader {
     for (std::size_t k = 0; k < tokens_.size(); ++k) {
       if (const std::optional<double> offset = offset_at(k)) {
         result.push_back({tokens_[k].text, *offset});
+      } else if (const std::optional<double> threshold = compared_at(k)) {
+        result.push_back({tokens_[k].text, *threshold});
       } else if (is_radius(k)) {
         result.push_back({"r", tokens_[k].value});
       }
@@ -193,6 +198,16 @@ class ParameterReader {
     if (at(number).kind != Token::Kind::number) return std::nullopt;
     if (bracketed && !is_sign(number + 1, ")")) return std::nullopt;
     if (!ends_a_term(number + (bracketed ? 2 : 1))) return std::nullopt;
+    return sense * at(number).value;
+  }
+
+  /// What the variable at k is compared with: "speed>0.5", "t<=-3".
+  [[nodiscard]] std::optional<double> compared_at(std::size_t k) const {
+    if (!is_variable(k) || !is_sign(k + 1, "<>")) return std::nullopt;
+    std::size_t number = is_sign(k + 2, "=") ? k + 3 : k + 2;
+    const double sense = is_sign(number, "-") ? -1.0 : 1.0;
+    if (is_sign(number, "-")) ++number;
+    if (at(number).kind != Token::Kind::number || !ends_a_term(number + 1)) return std::nullopt;
     return sense * at(number).value;
   }
 

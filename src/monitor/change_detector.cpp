@@ -87,6 +87,23 @@ void ChangeDetector::take(const Eigen::VectorXd& whitened, const Eigen::MatrixXd
   }
 }
 
+void ChangeDetector::alarmed(long leg) {
+  alarm_ = leg;
+}
+
+void ChangeDetector::clear() {
+  starts_.clear();
+  alarm_.reset();
+}
+
+std::size_t ChangeDetector::telling() const {
+  if (!alarm_) return starts_.size();
+  const auto after = std::find_if(starts_.begin(), starts_.end(),
+                                  [this](const Start& one) { return one.leg > *alarm_; });
+  return after == starts_.begin() ? starts_.size()
+                                  : static_cast<std::size_t>(after - starts_.begin());
+}
+
 double ChangeDetector::evidence() const {
   double sum = 0.0;
   for (const Start& start : starts_) sum += log_parts(start).exp().sum();
@@ -97,8 +114,8 @@ std::vector<double> ChangeDetector::shares() const {
   const auto effects = static_cast<std::size_t>(usual_.size());
   std::vector<double> logs(effects);
   for (std::size_t effect = 0; effect < effects; ++effect) {
-    Eigen::ArrayXd parts(static_cast<Eigen::Index>(starts_.size()));
-    for (std::size_t k = 0; k < starts_.size(); ++k) {
+    Eigen::ArrayXd parts(static_cast<Eigen::Index>(telling()));
+    for (std::size_t k = 0; k < telling(); ++k) {
       parts[static_cast<Eigen::Index>(k)] =
           log_naming(starts_[k])[static_cast<Eigen::Index>(effect)];
     }
@@ -112,7 +129,7 @@ std::vector<double> ChangeDetector::shares() const {
 EffectSince ChangeDetector::likeliest(std::size_t effect) const {
   const auto at = static_cast<Eigen::Index>(effect);
   std::size_t best = 0;
-  for (std::size_t k = 1; k < starts_.size(); ++k) {
+  for (std::size_t k = 1; k < telling(); ++k) {
     if (log_naming(starts_[k])[at] > log_naming(starts_[best])[at]) best = k;
   }
   const Start& start = starts_[best];
@@ -127,7 +144,9 @@ EffectSince ChangeDetector::likeliest(std::size_t effect) const {
 std::pair<long, long> ChangeDetector::since(std::size_t effect, double share) const {
   const auto at = static_cast<Eigen::Index>(effect);
   std::vector<std::pair<double, long>> parts;
-  for (const Start& start : starts_) parts.emplace_back(log_naming(start)[at], start.leg);
+  for (std::size_t k = 0; k < telling(); ++k) {
+    parts.emplace_back(log_naming(starts_[k])[at], starts_[k].leg);
+  }
   std::sort(parts.rbegin(), parts.rend());
   double sum = 0.0;
   for (const auto& [part, leg] : parts) sum += std::exp(part - parts.front().first);

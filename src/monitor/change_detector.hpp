@@ -83,8 +83,12 @@ class ChangeDetector {
   /// Cosine between two effects over the legs since a start; 0 where one of them shows nowhere.
   [[nodiscard]] double cosine(std::size_t start, std::size_t a, std::size_t b) const;
 
+  /// An alarm was raised after this leg: what it is of began by then. Which effect and since when
+  /// are told by starts up to it, as long as one is kept.
+  void alarmed(long leg);
+
   [[nodiscard]] std::size_t starts() const { return starts_.size(); }
-  void clear() { starts_.clear(); }
+  void clear();
 
  private:
   struct Start {
@@ -103,10 +107,14 @@ class ChangeDetector {
     return log_parts(start, start.measured);
   }
 
+  /// How many of the starts tell which effect it is: the first ones.
+  [[nodiscard]] std::size_t telling() const;
+
   DetectorOptions options_;
   Eigen::ArrayXd usual_;
   std::vector<Start> starts_;  ///< the oldest first
   long leg_ = 0;
+  std::optional<long> alarm_;  ///< the leg after which it was raised
 };
 
 }  // namespace trussmap

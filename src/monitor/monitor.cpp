@@ -254,8 +254,9 @@ class __attribute__((visibility("hidden"))) Monitor::State {
     report_.evidence = detector_.evidence();
     if (detector_.starts() == 0) return;
     find();
-    // An alarm has a name.
-    report_.alarm = report_.alarm || (report_.evidence >= 1.0 && report_.found);
+    if (report_.alarm || report_.evidence < 1.0 || !report_.found) return;
+    report_.alarm = true;  // it has a name
+    detector_.alarmed(report_.legs);
   }
 
   void find() {

@@ -9,6 +9,7 @@
 //   ladder_chart    what each step takes off the held-out legs' error, down to noise alone
 //   source_chart    is each source of noise as large as stated?
 //   quantile_chart  do its errors scatter as they should?
+//   histogram_chart the same errors counted, beside a normal distribution
 //   held_out_chart  how many held-out legs end within which distance
 //   legs_chart      stretch or orientation error of all legs, in time
 //   worst_chart     the legs with most chi^2
@@ -45,10 +46,26 @@ struct RouteError {
 /// Of all routes between landmarks of the map, the worst first.
 [[nodiscard]] std::vector<RouteError> route_errors(const std::vector<LegMisfit>& legs,
                                                    const FittedMap& map);
-/// `worst`: the error that has the strongest colour, m. Of a map without landmarks it is the path.
+/// Likewise of held-out legs, by where they are predicted to end; routes that have none are last,
+/// with `legs` 0. `all` as above.
+[[nodiscard]] std::vector<RouteError> held_out_errors(const std::vector<LegPrediction>& legs,
+                                                      const std::vector<LegMisfit>& all,
+                                                      const FittedMap& map);
+
+/// What the colours of a route chart are of.
+struct RouteColours {
+  double worst = 0.0;   ///< m, the error that has the strongest colour
+  std::string caption;  ///< what an error is
+  std::string key;      ///< of the strongest colour
+};
+/// Of legs by wheels alone.
+[[nodiscard]] RouteColours by_wheels_alone(double worst);
+/// Of held-out legs: twice the error `first`, m, has the strongest colour.
+[[nodiscard]] RouteColours by_held_out_legs(double first);
+/// Of a map without landmarks it is the path.
 [[nodiscard]] Chart route_chart(const std::string& id, const std::string& title,
                                 const FittedMap& map, const std::vector<RouteError>& routes,
-                                double worst);
+                                const RouteColours& colours);
 /// Rings round the places that effects act at, where any does.
 void add_places(Chart& chart, const std::vector<Effect>& effects);
 
@@ -80,6 +97,9 @@ using NamedSources = std::pair<std::string, std::vector<SourceCalibration>>;
 /// Standardised residuals against those that a normal distribution would have (Q-Q).
 [[nodiscard]] Chart quantile_chart(const std::string& id, const std::string& title,
                                    const std::vector<SourceResiduals>& sources);
+/// All of them in steps of half a standard deviation.
+[[nodiscard]] Chart histogram_chart(const std::string& id, const std::string& title,
+                                    const std::vector<SourceResiduals>& sources);
 
 /// A name for each set: "nominal", "with hard iron".
 using NamedHeldOut = std::pair<std::string, HeldOut>;

@@ -77,4 +77,50 @@ Chart quantile_chart(const std::string& id, const std::string& title,
   return chart;
 }
 
+Chart histogram_chart(const std::string& id, const std::string& title,
+                      const std::vector<SourceResiduals>& sources) {
+  constexpr int kReach = 10;     // steps either way; the last ones take what is beyond
+  constexpr double kStep = 0.5;  // standard deviations
+  std::vector<double> counts(2 * kReach, 0.0);
+  double all = 0.0;
+  for (const SourceResiduals& one : sources) {
+    for (const double z : one.standardised) {
+      if (!std::isfinite(z)) continue;
+      const double bin = std::clamp(std::floor(z / kStep), -1.0 * kReach, kReach - 1.0);
+      counts[static_cast<std::size_t>(bin + kReach)] += 1.0;
+      all += 1.0;
+    }
+  }
+  Chart chart;
+  chart.id = id;
+  chart.title = title;
+  chart.caption =
+      "Every error over its standard deviation, as the model states it, in steps of half a "
+      "standard "
+      "deviation; those beyond 5 are in the outermost. The faint line is what a normal "
+      "distribution "
+      "would show. Wider: more noise than stated, or an effect is missing.";
+  chart.x.title = "error [standard deviations]";
+  chart.y.title = "share [%]";
+  chart.y.zero = true;
+  chart.height = 300.0;
+  ChartLayer normal{LayerKind::line, "as stated", {{""}, {""}}, "faint"};
+  ChartLayer seen{LayerKind::line, "seen", {{chart.x.title}, {chart.y.title}}, "1"};
+  for (int k = 0; all >= static_cast<double>(kFewest) && k < 2 * kReach; ++k) {
+    const double from = kStep * (k - kReach);
+    // normal_p_value(x): the share beyond x.
+    const double within = normal_p_value(from) - normal_p_value(from + kStep);
+    for (const double x : {from, from + kStep}) {
+      normal.columns[0].numbers.push_back(x);
+      normal.columns[1].numbers.push_back(100.0 * within);
+      seen.columns[0].numbers.push_back(x);
+      seen.columns[1].numbers.push_back(100.0 * counts[static_cast<std::size_t>(k)] / all);
+    }
+  }
+  if (seen.columns[0].numbers.empty()) return chart;
+  chart.layers.push_back(std::move(normal));
+  chart.layers.push_back(std::move(seen));
+  return chart;
+}
+
 }  // namespace trussmap

@@ -13,46 +13,101 @@
 
 namespace trussmap {
 
-std::vector<RouteError> route_errors(const std::vector<LegMisfit>& legs, const FittedMap& map) {
-  const Places places = places_of(map);
-  std::map<std::pair<std::string, std::string>, RouteError> routes;
-  for (const LegMisfit& leg : legs) {
-    const auto from = places.find(leg.from);
-    const auto to = places.find(leg.to);
-    if (from == places.end() || to == places.end() || leg.from == leg.to) continue;
-    const double length = (to->second - from->second).norm();
-    const double along = length * leg.stretch_error;
-    const double left = length * leg.orientation_error;
-    if (!std::isfinite(along) || !std::isfinite(left)) continue;
-    RouteError& route = routes[std::minmax(leg.from, leg.to)];
-    if (route.legs == 0) {
-      route.from = leg.from;
-      route.to = leg.to;
+namespace {
+
+/// Errors of legs, m, along their routes and to the left, gathered by route.
+class RouteGatherer {
+ public:
+  explicit RouteGatherer(const FittedMap& map) : places_(places_of(map)) {}
+
+  /// `error`: of a route's length from one end to the other, by its direction.
+  template <typename Error>
+  void add(const std::string& from, const std::string& to, int legs, const Error& error) {
+    const auto begin = places_.find(from);
+    const auto end = places_.find(to);
+    if (begin == places_.end() || end == places_.end() || from == to) return;
+    const Vector2 off = error(Vector2(end->second - begin->second));
+    if (!off.allFinite()) return;
+    RouteError& route = routes_[std::minmax(from, to)];
+    if (route.from.empty()) {
+      route.from = from;
+      route.to = to;
     }
-    ++route.legs;
-    route.rms += along * along + left * left;
-    route.along += along;
-    route.left += left;
+    route.legs += legs;
+    route.rms += legs * off.squaredNorm();
+    route.along += legs * off.x();
+    route.left += legs * off.y();
   }
-  std::vector<RouteError> result;
-  for (auto& [ends, route] : routes) {
-    route.rms = std::sqrt(route.rms / route.legs);
-    route.along /= route.legs;
-    route.left /= route.legs;
-    result.push_back(route);
+
+  /// The worst first.
+  [[nodiscard]] std::vector<RouteError> routes() const {
+    std::vector<RouteError> result;
+    for (const auto& [ends, sum] : routes_) {
+      RouteError route = sum;
+      const double legs = std::max(1, route.legs);
+      route.rms = std::sqrt(route.rms / legs);
+      route.along /= legs;
+      route.left /= legs;
+      result.push_back(route);
+    }
+    std::stable_sort(result.begin(), result.end(), [](const RouteError& a, const RouteError& b) {
+      return std::pair(a.legs > 0, a.rms) > std::pair(b.legs > 0, b.rms);
+    });
+    return result;
   }
-  std::stable_sort(result.begin(), result.end(),
-                   [](const RouteError& a, const RouteError& b) { return a.rms > b.rms; });
-  return result;
+
+ private:
+  Places places_;
+  std::map<std::pair<std::string, std::string>, RouteError> routes_;
+};
+
+}  // namespace
+
+std::vector<RouteError> route_errors(const std::vector<LegMisfit>& legs, const FittedMap& map) {
+  RouteGatherer routes(map);
+  for (const LegMisfit& leg : legs) {
+    routes.add(leg.from, leg.to, 1, [&leg](const Vector2& way) {
+      return Vector2(way.norm() * Vector2(leg.stretch_error, leg.orientation_error));
+    });
+  }
+  return routes.routes();
+}
+
+std::vector<RouteError> held_out_errors(const std::vector<LegPrediction>& legs,
+                                        const std::vector<LegMisfit>& all, const FittedMap& map) {
+  RouteGatherer routes(map);
+  for (const LegPrediction& leg : legs) {
+    routes.add(leg.from, leg.to, 1, [&leg](const Vector2& way) {
+      const Vector2 ahead = way.normalized();
+      return Vector2(ahead.dot(leg.arrival_error), quarter_turn(ahead).dot(leg.arrival_error));
+    });
+  }
+  for (const LegMisfit& leg : all) {
+    routes.add(leg.from, leg.to, 0, [](const Vector2&) { return Vector2(Vector2::Zero()); });
+  }
+  return routes.routes();
+}
+
+RouteColours by_wheels_alone(double worst) {
+  return {worst,
+          "Routes are coloured by how far off their legs end (root mean square), reckoned by "
+          "the wheels alone from where the fit has them start: thin and grey is nothing, "
+          "thick and red the most. With its other sensors the robot ends nearer.",
+          fmt::format("{:.3g} mm off by wheels alone", 1e3 * worst)};
+}
+
+RouteColours by_held_out_legs(double first) {
+  const double worst = 2.0 * first;
+  return {worst,
+          "Routes are coloured by how far off their held-out legs end (root mean square), as the "
+          "number above is of all of them: thin and grey is nothing, thick and red twice what it "
+          "was at the first step. Faint: no leg of that route is held out.",
+          fmt::format("{:.3g} mm off at a leg's end", 1e3 * worst)};
 }
 
 Chart route_chart(const std::string& id, const std::string& title, const FittedMap& map,
-                  const std::vector<RouteError>& routes, double worst) {
-  Chart chart =
-      map_chart(id, title, map,
-                "Routes are coloured by how far off their legs end (root mean square), reckoned by "
-                "the wheels alone from where the fit has them start: thin and grey is nothing, "
-                "thick and red the most. With its other sensors the robot ends nearer.");
+                  const std::vector<RouteError>& routes, const RouteColours& colours) {
+  Chart chart = map_chart(id, title, map, colours.caption);
   const Places places = places_of(map);
   ChartLayer bars{LayerKind::segments,
                   "",
@@ -66,9 +121,11 @@ Chart route_chart(const std::string& id, const std::string& title, const FittedM
                    {"off by [mm]"},
                    {"too long by [mm]"},
                    {"to the left by [mm]"}}};
-  bars.key = {"", "0 mm", fmt::format("{:.3g} mm off by wheels alone", 1e3 * worst)};
+  bars.key = {"", "0 mm", colours.key};
   std::vector<Vector2> net;
-  const std::size_t drawn = std::min(kMostBars, routes.size());
+  const auto judged = std::partition_point(routes.begin(), routes.end(),
+                                           [](const RouteError& one) { return one.legs > 0; });
+  const std::size_t drawn = std::min(kMostBars, static_cast<std::size_t>(judged - routes.begin()));
   for (std::size_t k = drawn; k < routes.size(); ++k) {
     net.insert(net.end(),
                {places.at(routes[k].from), places.at(routes[k].to), Vector2(kAbsent, kAbsent)});
@@ -85,7 +142,7 @@ Chart route_chart(const std::string& id, const std::string& title, const FittedM
     bars.columns[7].numbers.push_back(1e3 * route.rms);
     bars.columns[8].numbers.push_back(1e3 * route.along);
     bars.columns[9].numbers.push_back(1e3 * route.left);
-    bars.shade.push_back(worst > 0.0 ? std::min(1.0, route.rms / worst) : 0.0);
+    bars.shade.push_back(colours.worst > 0.0 ? std::min(1.0, route.rms / colours.worst) : 0.0);
   }
   if (bars.shade.size() > 150) bars.size = 0.5;
   if (!net.empty()) chart.layers.push_back(net_layer("further routes", net));

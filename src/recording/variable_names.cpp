@@ -25,6 +25,17 @@ const std::vector<std::string>& reserved_variables() {
   return names;
 }
 
+std::string_view unit_of_variable(std::string_view variable) {
+  if (variable == "speed") return "m/s";
+  if (variable == "acceleration") return "m/s\u00b2";
+  if (variable == "turn_rate") return "rad/s";
+  if (variable == "curvature") return "1/m";
+  if (variable == "t") return "s";
+  if (variable == "x" || variable == "y" || variable == "distance") return "m";
+  if (variable == "heading" || variable == "arc_angle" || variable == "spin_angle") return "rad";
+  return "";
+}
+
 bool is_event(std::string_view variable) {
   return std::find(kEvents.begin(), kEvents.end(), variable) != kEvents.end();
 }

@@ -17,4 +17,7 @@ namespace trussmap {
 /// speed, turn_rate, acceleration, curvature: smoothed within one kind of motion.
 [[nodiscard]] bool is_rate(std::string_view variable);
 
+/// "m/s" of speed; "" of what has none, or whose unit nobody states.
+[[nodiscard]] std::string_view unit_of_variable(std::string_view variable);
+
 }  // namespace trussmap

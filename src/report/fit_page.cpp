@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -81,6 +83,40 @@ ResultRows rows_on(const FitEvidence& evidence) {
 
 }  // namespace
 
+namespace {
+
+/// What the fit cannot tell apart well: coefficients whose estimates move together.
+std::optional<PageTable> correlation_table(const FitEvidence& evidence) {
+  constexpr Eigen::Index kMost = 12;
+  const Eigen::Index count = evidence.correlation.rows();
+  if (count < 2 || count > kMost) return std::nullopt;
+  std::vector<std::string> names;
+  for (const EffectEvidence& one : evidence.effects) {
+    const Effect& effect = one.estimate.effect;
+    for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
+      const bool several = effect.coefficients.size() > 1;
+      names.push_back(name_in_words(effect) + (several ? fmt::format(", {}", k + 1) : ""));
+    }
+  }
+  if (static_cast<Eigen::Index>(names.size()) != count) return std::nullopt;
+  PageTable table;
+  table.caption =
+      "How the coefficients' errors are correlated: near 1 or \u22121 the recordings tell the two "
+      "apart badly";
+  table.headings = {""};
+  for (Eigen::Index k = 0; k < count; ++k) table.headings.push_back(fmt::format("{}", k + 1));
+  for (Eigen::Index k = 0; k < count; ++k) {
+    std::vector<std::string> row{fmt::format("{} {}", k + 1, names[static_cast<std::size_t>(k)])};
+    for (Eigen::Index j = 0; j < count; ++j) {
+      row.push_back(j > k ? "" : typeset(fmt::format("{:.2f}", evidence.correlation(k, j))));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace
+
 Page fit_page(const FitEvidence& evidence, const std::string& subject) {
   const Comparison& before = evidence.without.comparison;
   const Comparison& after = evidence.with.comparison;
@@ -97,7 +133,12 @@ Page fit_page(const FitEvidence& evidence, const std::string& subject) {
   const NamedModel given{kBefore, evidence.without};
   const NamedModel fitted{kAfter, evidence.with};
   page.sections.push_back(maps_section("The map, before and after", {given, fitted}, effects));
-  if (!effects.empty()) page.sections.push_back(effect_section("The effects", effects));
+  if (!effects.empty()) {
+    page.sections.push_back(effect_section("The effects", effects));
+    if (auto table = correlation_table(evidence)) {
+      page.sections.back().details.emplace_back(std::move(*table));
+    }
+  }
   page.sections.push_back(gain_section(given, fitted, after.held_out.expected_rms));
   page.sections.push_back(noise_section({given, fitted}));
   page.sections.push_back(legs_section("Legs, with the effects", after));

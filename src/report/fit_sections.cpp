@@ -197,9 +197,9 @@ PageSection maps_section(const std::string& title, const std::vector<NamedModel>
     const std::string id = models.size() == 1 ? "map" : fmt::format("map-{}", k + 1);
     const std::string name = capitalised(models[k].name);
     // Without landmarks there are no routes: the path alone.
-    maps.push_back(routes[k].empty()
-                       ? truss_chart(id, name, models[k].model.map, {}, 1.0)
-                       : route_chart(id, name, models[k].model.map, routes[k], worst));
+    maps.push_back(routes[k].empty() ? truss_chart(id, name, models[k].model.map, {}, 1.0)
+                                     : route_chart(id, name, models[k].model.map, routes[k],
+                                                   by_wheels_alone(worst)));
     add_places(maps.back(), placed);
     if (k > 0) maps.back().caption = "The same millimetres have the same colour as in the first.";
   }
@@ -221,6 +221,11 @@ PageSection noise_section(const std::vector<NamedModel>& models) {
                                      (alone ? "" : " \u2013 " + models[k].name),
                                  models[k].model.comparison.residuals);
     if (chart.layers.size() > 1) charts.push_back(std::move(chart));
+    Chart counted = histogram_chart(
+        alone ? "histogram" : fmt::format("histogram-{}", k + 1),
+        std::string("How large are the errors?") + (alone ? "" : " \u2013 " + models[k].name),
+        models[k].model.comparison.residuals);
+    if (!counted.layers.empty()) charts.push_back(std::move(counted));
   }
   if (!charts.empty()) section.details.emplace_back(std::move(charts));
   return section;

@@ -181,6 +181,33 @@ std::string contents(const PageContent& page) {
   return text + "</ul></nav>\n";
 }
 
+/// Made by what, of what, when; and an entry for a list of references.
+std::string foot(const PageContent& page) {
+  std::string text =
+      "<footer><p>Made by trussmap. Charts drawn with Vega. This file holds all its data and "
+      "loads nothing.</p>\n";
+  if (page.provenance) {
+    const Provenance& from = *page.provenance;
+    text += "<details class=\"more\"><summary>How this page was made; how to cite it</summary>\n";
+    text += fmt::format("<pre>{}</pre>\n", xml_escaped(from.command));
+    PageTable table;
+    table.headings = {"", ""};
+    table.texts = 2;
+    table.rows.push_back({"trussmap", from.version});
+    if (!from.date.empty()) table.rows.push_back({"made on", from.date});
+    for (const auto& [name, print] : from.data) {
+      table.rows.push_back({name, "fingerprint " + print});
+    }
+    text += html(table);
+    text += fmt::format(
+        "<pre>@software{{trussmap,\n  title = {{trussmap: landmark maps as elastic trusses, and "
+        "criticism of odometry models}},\n  author = {{The trussmap authors}},\n  version = "
+        "{{{}}},\n  year = {{{}}}\n}}</pre>\n</details>\n",
+        xml_escaped(from.version), from.date.substr(0, 4));
+  }
+  return text + "</footer>\n";
+}
+
 }  // namespace
 
 std::vector<const Chart*> charts_of(const PageContent& page) {
@@ -221,14 +248,19 @@ std::string render_page(const PageContent& page, const PageRuntime& runtime) {
   }
   text +=
       "</main>\n<noscript><p>The charts need JavaScript; the figures and tables above do not.</p>"
-      "</noscript>\n"
-      "<footer><p>Made by trussmap. Charts drawn with Vega. This file holds all its data and "
-      "loads nothing.</p></footer>\n"
+      "</noscript>\n" +
+      foot(page) +
       "<div id=\"tip\" role=\"tooltip\" hidden></div>\n"
       "<div id=\"said\" class=\"unseen\" aria-live=\"polite\"></div>\n"
       "<div class=\"paper\" hidden></div>\n";
   text += fmt::format("<script>{}</script>\n</body>\n</html>\n", runtime.script);
   return text;
+}
+
+Page with_provenance(const Page& page, const Provenance& provenance) {
+  PageContent content = page.content();
+  content.provenance = provenance;
+  return content;
 }
 
 Page::Page(PageContent content)

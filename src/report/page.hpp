@@ -16,6 +16,7 @@
 #include "plot/chart.hpp"
 #include "trussmap/pages.hpp"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -63,6 +64,7 @@ struct PageContent {
   std::vector<PageAnswer> answers;
   std::vector<std::string> notes;
   std::vector<PageSection> sections;
+  std::optional<Provenance> provenance = std::nullopt;  ///< at the foot
 };
 
 /// The file. Throws std::invalid_argument like chart_json, and where two charts share an id.

@@ -103,7 +103,8 @@ ordered_json card_json(const TriedModel& now, std::size_t k) {
                           {"value", parameter.parameter.value},
                           {"step", parameter.step},
                           {"least", parameter.least},
-                          {"most", parameter.most}});
+                          {"most", parameter.most},
+                          {"unit", parameter.unit}});
   }
   card["parameters"] = std::move(parameters);
   return card;
@@ -203,6 +204,14 @@ std::vector<std::string> shape_variables(const std::vector<DrivenRecording>& rec
   return names;
 }
 
+/// What a shape may speak of in all of these, with units.
+ordered_json variables_json(const std::vector<DrivenRecording>& recordings) {
+  ordered_json list = ordered_json::array();
+  for (const std::string& name : shape_variables(recordings)) {
+    list.push_back({{"name", name}, {"unit", unit_of_variable(name)}});
+  }
+  return list;
+}
 /// What an effect can act on in these recordings: where the search has looked, or the model acts.
 ordered_json channels_json(const TriedModel& now) {
   std::set<Channel> there;
@@ -344,10 +353,10 @@ std::string workbench_json(const TriedModel& now, const WorkbenchLog& log,
                          {"cards", cards_json(now)},
                          {"unseen", unseen_json(now.diagnosis())},
                          {"noise", noise_json(now)},
-                         {"variables", shape_variables(now.recordings())},
+                         {"variables", variables_json(now.recordings())},
                          {"channels", channels_json(now)},
                          {"staircase", chart_view(staircase(log, way))}};
-  result.update(views_json(now, std::nullopt));
+  result.update(views_json(now, std::nullopt, log.steps.front().arrival_rms));
   return safe_text(result);
 }
 

@@ -20,8 +20,6 @@ constexpr const char* kBody = R"html(<header id="head">
 <button type="button" id="stop" hidden>Stop it</button></div>
 <p id="failed" class="failed" role="alert" hidden></p>
 <div class="acts">
-<button type="button" id="undo" disabled>Undo</button>
-<button type="button" id="redo" disabled>Redo</button>
 <span class="takes">Export:
 <a href="export/model.toml" download>model.toml</a>
 <a href="export/constants.toml" download>constants</a>
@@ -30,6 +28,12 @@ constexpr const char* kBody = R"html(<header id="head">
 <a href="export/report.html" download>report</a></span>
 </div>
 </header>
+<div id="bar" role="region" aria-label="How far off">
+<p id="figure"><span id="figure-now">&#8211;</span> <span id="figure-floor"></span> <span id="provisional" class="tag plain" hidden>provisional: the noise is still being estimated</span></p>
+<div id="bar-steps"></div>
+<p class="acts"><button type="button" id="undo" disabled>Undo</button>
+<button type="button" id="redo" disabled>Redo</button></p>
+</div>
 <main class="bench">
 <section id="effects" aria-labelledby="effects-title" tabindex="0">
 <h2 id="effects-title">Effects</h2>
@@ -37,22 +41,22 @@ constexpr const char* kBody = R"html(<header id="head">
 <ul id="on" class="cards"></ul>
 <h3>What each would save</h3>
 <div id="parts"></div>
+<details id="unseen"><summary>What these recordings cannot show</summary><ul></ul></details>
+</section>
+<section id="view" aria-label="The effect that is looked at, and the map" tabindex="0">
 <details id="own"><summary>An effect of your own</summary>
 <form id="own-form">
 <label>Name <input id="own-name" maxlength="80" value="my effect" autocomplete="off"></label>
 <label>Acts on <select id="own-channel"></select></label>
 <p id="own-does" class="hint"></p>
-<label>Goes with <input id="own-shape" maxlength="200" placeholder="max(0, speed-0.5)"
- autocomplete="off" spellcheck="false" list="own-words" aria-describedby="own-fault"></label>
+<div id="own-terms"></div>
 <datalist id="own-words"></datalist>
 <p id="own-fault" class="failed" role="status"></p>
-<p class="hint">+ - * / ^ ( ), sin cos tan abs sign min max exp log sqrt, and:
-<span id="own-variables"></span></p>
-<button type="submit" id="own-add">Add it</button>
+<p class="hint">A coefficient is fitted for each term. + - * / ^ ( ), &lt; &gt; (1 where it holds, else
+0), sin cos tan abs sign min max exp log sqrt, and: <span id="own-variables"></span></p>
+<p class="acts"><button type="button" id="own-term">Another term</button>
+<button type="submit" id="own-add" disabled>Add it</button></p>
 </form></details>
-<details id="unseen"><summary>What these recordings cannot show</summary><ul></ul></details>
-</section>
-<section id="view" aria-label="The effect that is looked at, and the map" tabindex="0">
 <div id="looked" aria-live="polite">
 <h2 id="looked-name">Point at an effect</h2>
 <p id="looked-words">Its curve appears here before anything is fitted.</p>
@@ -83,8 +87,7 @@ excluded counts in no fit.</p>
 </section>
 </section>
 <section id="error" aria-labelledby="error-title" tabindex="0">
-<h2 id="error-title">Dead reckoning is off by</h2>
-<p id="figure"><span id="figure-now">&#8211;</span> <span id="provisional" class="tag plain" hidden>provisional: the noise is still being estimated</span></p>
+<h2 id="error-title">How far off, and why</h2>
 <p id="figure-more"></p>
 <figure class="chart" id="staircase"><h3></h3><div class="picture"></div>
 <details class="read"><summary>How to read it</summary><p></p></details></figure>

@@ -78,12 +78,30 @@ ChartLayer leg_layer(const std::vector<TriedLeg>& legs, const std::string& name,
   return layer;
 }
 
-Chart map_of(const TriedModel& now, const IsShown& is_shown, bool all) {
+/// Routes by what is left: by the legs held out, on one scale for all steps; where none is, by the
+/// wheels alone.
+Chart routes_of(const TriedModel& now, const IsShown& is_shown, double first_rms) {
+  const auto shown = [&is_shown](const auto& legs) {
+    auto some = legs;
+    std::erase_if(some, [&is_shown](const auto& leg) { return !is_shown(leg.leg); });
+    return some;
+  };
   const std::vector<LegMisfit>& misfits = now.comparison().worst;
-  const std::vector<RouteError> routes = route_errors(misfits, now.map());
-  const double worst = routes.empty() ? 0.0 : routes.front().rms;
+  const bool held_out = first_rms > 0.0 && !now.diagnosis().held_out.legs.empty();
+  const std::vector<RouteError> routes =
+      held_out ? held_out_errors(shown(now.diagnosis().held_out.legs), shown(misfits), now.map())
+               : route_errors(shown(misfits), now.map());
+  const auto worst = [&] {
+    const std::vector<RouteError> all = route_errors(misfits, now.map());
+    return all.empty() ? 0.0 : all.front().rms;
+  };
+  return route_chart("map", "The map, routes by what is left", now.map(), routes,
+                     held_out ? by_held_out_legs(first_rms) : by_wheels_alone(worst()));
+}
+
+Chart map_of(const TriedModel& now, const IsShown& is_shown, bool all, double first_rms) {
   Chart map;
-  if (routes.empty()) {
+  if (route_errors(now.comparison().worst, now.map()).empty()) {
     map = truss_chart("map", "The map", now.map(), {}, 1.0);
     if (!all) {
       map.layers.push_back(leg_layer(now.legs(), "chosen", "2", [&is_shown](const TriedLeg& leg) {
@@ -91,11 +109,7 @@ Chart map_of(const TriedModel& now, const IsShown& is_shown, bool all) {
       }));
     }
   } else {
-    std::vector<LegMisfit> shown;
-    std::ranges::copy_if(misfits, std::back_inserter(shown),
-                         [&is_shown](const LegMisfit& leg) { return is_shown(leg.leg); });
-    map = route_chart("map", "The map, routes by what is left", now.map(),
-                      all ? routes : route_errors(shown, now.map()), worst);
+    map = routes_of(now, is_shown, first_rms);
   }
   std::vector<Effect> acting;
   for (const EffectEstimate& one : now.fit().effects) acting.push_back(one.effect);
@@ -157,19 +171,20 @@ ordered_json legs_json(const std::vector<TriedLeg>& legs, const IsShown& is_show
 }  // namespace
 
 ordered_json views_json(const TriedModel& now,
-                        const std::optional<std::vector<std::size_t>>& chosen) {
+                        const std::optional<std::vector<std::size_t>>& chosen, double first_rms) {
   const IsShown is_shown = [&chosen](std::size_t leg) {
     return !chosen || std::ranges::binary_search(*chosen, leg);
   };
   const bool all = !chosen.has_value();
   return {{"legs", legs_json(now.legs(), is_shown, all)},
           {"figure", figure_json(now.diagnosis().held_out, is_shown)},
-          {"map", chart_view(map_of(now, is_shown, all))},
+          {"map", chart_view(map_of(now, is_shown, all, first_rms))},
           {"strips", strips_json(now, is_shown, all)}};
 }
 
-std::string selection_json(const TriedModel& now, const std::vector<std::size_t>& legs) {
-  return safe_text(views_json(now, legs));
+std::string selection_json(const TriedModel& now, const WorkbenchLog& log,
+                           const std::vector<std::size_t>& legs) {
+  return safe_text(views_json(now, legs, log.steps.front().arrival_rms));
 }
 
 }  // namespace trussmap

@@ -7,7 +7,9 @@
 #include "criticism/look_alikes.hpp"
 #include "criticism/score_test.hpp"
 #include "fit/fit_state.hpp"
+#include "recording/variable_names.hpp"
 #include "statistics/distributions.hpp"
+#include "trussmap/catalogue.hpp"
 #include "trussmap/workbench.hpp"
 #include "validation/held_out_legs.hpp"
 #include "workbench/tried_legs.hpp"
@@ -34,6 +36,17 @@ std::optional<HeldOutMetrics> predicted_by(const HeldOutLegs& legs, const Effect
 
 ModelFit judged_fit(const Diagnosis& diagnosis, const ModelFit& fit) {
   return diagnosis.under ? diagnosis.under->fit : fit;
+}
+
+std::string unit_of_parameter(const Candidate& candidate, std::size_t k) {
+  const std::string& name = candidate.parameters[k].name;
+  if (candidate.form == Form::catalogue) {
+    for (const OpenParameter& one : find_entry(candidate.effect.name)->parameters) {
+      if (one.name == name) return std::string(one.unit);
+    }
+  }
+  if (name == "x" || name == "y" || name == "r") return "m";
+  return std::string(unit_of_variable(candidate.variable));
 }
 
 void say(const std::function<void(TryingStage)>& progress, TryingStage stage) {
@@ -143,7 +156,8 @@ std::vector<EffectParameter> TriedModel::parameters(std::size_t finding) const {
   std::vector<EffectParameter> result;
   for (std::size_t k = 0; k < candidate.parameters.size(); ++k) {
     const SearchRange& range = candidate.search[k];
-    result.push_back({candidate.parameters[k], range.step, range.least, range.most});
+    result.push_back({candidate.parameters[k], range.step, range.least, range.most,
+                      unit_of_parameter(candidate, k)});
   }
   return result;
 }
@@ -160,10 +174,13 @@ Effect TriedModel::moved(std::size_t finding, const std::vector<double>& values)
   return effect;
 }
 
-std::vector<double> TriedModel::best_near(std::size_t finding,
-                                          const std::vector<double>& values) const {
+std::vector<double> TriedModel::best_near(std::size_t finding, const std::vector<double>& values,
+                                          std::optional<std::size_t> only) const {
   static_cast<void>(moved(finding, values));
-  const Candidate& candidate = tried_->candidate(finding);
+  Candidate candidate = tried_->candidate(finding);
+  for (std::size_t k = 0; only && k < candidate.search.size(); ++k) {
+    if (k != *only) candidate.search[k].least = candidate.search[k].most = values[k];
+  }
   const std::scoped_lock lock(tried_->mutex);
   const Candidate best = refined(*tried_->tests, with_parameters(candidate, values));
   std::vector<double> result;

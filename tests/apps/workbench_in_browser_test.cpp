@@ -120,6 +120,8 @@ TEST(WorkbenchInBrowser, AShapeOfOnesOwnIsPreviewedAsItIsTyped) {
   chrome.click("#own-shape");
   chrome.type("sin(headi");
   chrome.wait("document.getElementById('own-fault').textContent.includes('cannot be read')");
+  EXPECT_TRUE(chrome.eval("document.getElementById('own-add').disabled").get<bool>());
+  EXPECT_TRUE(chrome.eval("document.getElementById('plot').hidden").get<bool>());
   EXPECT_TRUE(chrome
                   .eval("[...document.querySelectorAll('#own-words option')]"
                         ".some(one => one.value === 'sin(heading')")
@@ -127,6 +129,11 @@ TEST(WorkbenchInBrowser, AShapeOfOnesOwnIsPreviewedAsItIsTyped) {
   chrome.type("ng)");
   chrome.wait(looked_at("my effect"));
   EXPECT_EQ(chrome.text("#own-fault"), "");
+  EXPECT_FALSE(chrome.eval("document.getElementById('own-add').disabled").get<bool>());
+  // A sine and a cosine: a coefficient each.
+  chrome.click("#own-term");
+  chrome.type("cos(heading)");
+  chrome.wait("document.getElementById('looked-saves').textContent.includes('2 coefficients')");
   // A name that would be markup is text.
   chrome.click("#own-name");
   chrome.eval("document.getElementById('own-name').value = '<img src=x onerror=alert(1)>'");
@@ -136,6 +143,47 @@ TEST(WorkbenchInBrowser, AShapeOfOnesOwnIsPreviewedAsItIsTyped) {
   chrome.wait(at_step(1, 2));
   EXPECT_NE(chrome.text("#on").find("<img src=x"), std::string::npos);
   EXPECT_EQ(chrome.eval("document.querySelectorAll('img').length"), 0);
+  EXPECT_EQ(chrome.complaints(), std::vector<std::string>());
+}
+
+/// How red the map's reddest route is, 0 to 1.
+double reddest(Chrome& chrome) {
+  return chrome
+      .eval(
+          "Math.max(0, ...window.trussmap.state().map.layers.filter(one => one.shade)"
+          ".flatMap(one => one.shade))")
+      .get<double>();
+}
+
+TEST(WorkbenchInBrowser, TheErrorIsInSightAtEveryWidthAndTheMapPalesWithIt) {
+  TRUSSMAP_NEEDS_BROWSER();
+  const ScratchFolder scratch;
+  const ServedBench bench(served(scratch, kRiddle, kRiddle + "/model.toml"));
+  Chrome chrome(scratch.path());
+  chrome.go(bench.address());
+  chrome.wait(at_step(0, 1));
+  for (const bool dark : {false, true}) {
+    for (const int width : {1440, 1024, 420}) {
+      chrome.look_as(width, 800, dark);
+      chrome.eval("window.scrollTo(0, document.body.scrollHeight)");
+      for (const char* what : {"#figure-now", "#figure-floor", "#bar-steps svg"}) {
+        const std::string inside = fmt::format(
+            "(() => {{ const box = document.querySelector('{}').getBoundingClientRect(); return "
+            "box.top >= 0 && box.left >= 0 && box.bottom < 200 && box.right <= {} && box.width > "
+            "0; "
+            "}})()",
+            what, width);
+        EXPECT_TRUE(chrome.eval(inside).get<bool>()) << what << " at " << width;
+      }
+    }
+  }
+  chrome.look_as(1440, 1000, false);
+  const double before = reddest(chrome);
+  EXPECT_GT(before, 0.4);
+  chrome.click(card("hard iron") + " .act");
+  chrome.wait(at_step(1, 2));
+  EXPECT_LT(reddest(chrome), 0.4 * before);
+  EXPECT_NE(chrome.text("#figure-floor").find("noise alone"), std::string::npos);
   EXPECT_EQ(chrome.complaints(), std::vector<std::string>());
 }
 

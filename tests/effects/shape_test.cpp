@@ -40,6 +40,7 @@ TEST(Shape, KnowsItsFunctions) {
   EXPECT_EQ(value_of("sign(-x) + sign(0) + sqrt(4)"), 1.0);
   EXPECT_NEAR(value_of("sin(x)^2 + cos(x)^2 + tan(0)"), 1.0, 1e-15);
   EXPECT_EQ(value_of("-2^2"), -4.0);
+  EXPECT_EQ(value_of("(x>1)*5 + (x<1) + (x>=2) + (x <= 1.5)"), 6.0);  // x = 2
 }
 
 TEST(Shape, SaysWhatIsWrong) {
@@ -53,7 +54,8 @@ TEST(Shape, SaysWhatIsWrong) {
       << complaint("sin(x");
   EXPECT_EQ(complaint("rint(x)").rfind("shape \"rint(x)\" cannot be read: ", 0), 0U);
   EXPECT_EQ(complaint("").rfind("shape \"\" cannot be read: ", 0), 0U);
-  for (const char* other : {"x=3", "x, y", "(x, y)", "x>1", "x>0.5 ? 1 : 0", "x\n+y", "x && y"}) {
+  for (const char* other :
+       {"x=3", "x, y", "(x, y)", "x==1", "x=>1", "x>0.5 ? 1 : 0", "x\n+y", "x && y"}) {
     EXPECT_NE(complaint(other).find("has no meaning there, expected + - * /"), std::string::npos)
         << complaint(other);
   }
@@ -92,6 +94,9 @@ TEST(Shape, ItsParametersAreThePlacesThresholdsTimesAndRadii) {
       {"(1+sign(36-(x-12)^2-(y-1e-3)^2))/2", {{"x", 12.0}, {"y", 1e-3}}},
       {"max(0, speed-0.4)", {{"speed", 0.4}}},
       {"(1+sign(t-600))/2", {{"t", 600.0}}},
+      {"speed>0.4", {{"speed", 0.4}}},
+      {"(t<=-600)*speed", {{"t", -600.0}}},
+      {"speed>2*x", {}},
       {"(temperature_C-20.5)*sin(heading)", {{"temperature_C", 20.5}}},
       {"(sign(turn_rate-0.2)+sign(turn_rate+0.2))/2", {{"turn_rate", 0.2}, {"turn_rate", -0.2}}},
       {"x-3*y", {}},

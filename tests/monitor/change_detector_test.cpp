@@ -168,5 +168,28 @@ TEST(ChangeDetector, TellsWhichEffectAndSinceWhen) {
   EXPECT_NEAR(detector.cosine(since.start, 0, 1), 0.6, 1e-9);
 }
 
+// An effect of one standard deviation from leg 21 on, twice as large from leg 61 on: what was
+// announced after leg 40 began before, though the later start speaks more by then.
+TEST(ChangeDetector, WhatWasAnnouncedHasBegunByThen) {
+  DetectorOptions options;
+  options.rate = 0.1;
+  ChangeDetector detector(options, {1.0});
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> draw;
+  for (int leg = 1; leg <= 120; ++leg) {
+    detector.make_room();
+    detector.begin(leg, 0.003);
+    const double b = leg > 60 ? 4.0 : leg > 20 ? 0.5 : 0.0;
+    detector.take(Eigen::VectorXd::Constant(1, b + draw(random)),
+                  Eigen::MatrixXd::Ones(1, static_cast<Eigen::Index>(detector.starts())));
+  }
+  EXPECT_GT(detector.likeliest(0).leg, 50);
+  detector.alarmed(40);
+  EXPECT_LE(detector.likeliest(0).leg, 40);
+  EXPECT_LE(detector.since(0, 0.9).second, 40);
+  detector.clear();
+  EXPECT_EQ(detector.starts(), 0U);
+}
+
 }  // namespace
 }  // namespace trussmap::change_detector_test

@@ -49,10 +49,38 @@ TEST(RouteErrors, AreMetresAtTheEndOfTheRoutesLegs) {
   EXPECT_NEAR(routes[1].rms, 0.03, 1e-12);
 }
 
+LegPrediction held_out(const char* from, const char* to, const Vector2& error) {
+  LegPrediction one;
+  one.from = from;
+  one.to = to;
+  one.arrival_error = error;
+  return one;
+}
+
+TEST(RouteErrors, OfHeldOutLegsAreWhereTheyArePredictedToEnd) {
+  // c - b goes up: 0.03 m up is too far along, 0.04 m to the right of the picture is to its right.
+  const auto routes =
+      held_out_errors({held_out("c", "b", {0.04, 0.03})},
+                      {leg("c", "b", 0.5, 0.0), leg("a", "c", 0.5, 0.0)}, triangle());
+  ASSERT_EQ(routes.size(), 2U);
+  EXPECT_EQ(routes[0].legs, 1);
+  EXPECT_NEAR(routes[0].rms, 0.05, 1e-12);
+  EXPECT_NEAR(routes[0].along, 0.03, 1e-12);
+  EXPECT_NEAR(routes[0].left, -0.04, 1e-12);
+  EXPECT_EQ(routes[1].legs, 0);  // no leg of it is held out
+  const Chart chart = route_chart("map", "Map", triangle(), routes, by_held_out_legs(0.1));
+  for (const ChartLayer& layer : chart.layers) {
+    if (layer.kind != LayerKind::segments) continue;
+    ASSERT_EQ(layer.shade.size(), 1U);
+    EXPECT_NEAR(layer.shade[0], 0.25, 1e-12);  // of twice 0.1 m
+    EXPECT_EQ(layer.key[2], "200 mm off at a leg's end");
+  }
+}
+
 TEST(RouteChart, ColoursFromNothingToTheWorst) {
   const FittedMap map = triangle();
   const auto routes = route_errors({leg("a", "b", 0.02, 0.0), leg("a", "c", 0.0, 0.0)}, map);
-  const Chart chart = route_chart("map", "Map", map, routes, routes.front().rms);
+  const Chart chart = route_chart("map", "Map", map, routes, by_wheels_alone(routes.front().rms));
   const ChartLayer* bars = nullptr;
   for (const ChartLayer& layer : chart.layers) {
     if (layer.kind == LayerKind::segments) bars = &layer;
@@ -68,7 +96,7 @@ TEST(RouteChart, RingsThePlacesThatEffectsActAt) {
   Effect patch{"slippery patch", Channel::wheels, {}, {0.08}};
   patch.shape.push_back(
       Shape("(1+sign({r}^2-(x-{x})^2-(y-{y})^2))/2", {{"x", 1.5}, {"y", 2.0}, {"r", 0.7}}));
-  Chart chart = route_chart("map", "Map", triangle(), {}, 1.0);
+  Chart chart = route_chart("map", "Map", triangle(), {}, by_wheels_alone(1.0));
   const std::size_t before = chart.layers.size();
   add_places(chart, {wide});
   EXPECT_EQ(chart.layers.size(), before);
@@ -96,7 +124,7 @@ TEST(RouteChart, ManyRoutesAreOneNetBesideTheWorst) {
   }
   const auto routes = route_errors(legs, map);
   ASSERT_EQ(routes.size(), 399U);
-  const Chart chart = route_chart("map", "Map", map, routes, routes.front().rms);
+  const Chart chart = route_chart("map", "Map", map, routes, by_wheels_alone(routes.front().rms));
   std::size_t drawn = 0;
   bool net = false;
   for (const ChartLayer& layer : chart.layers) {

@@ -219,6 +219,14 @@ TEST(Workbench, ValuesOfACandidateCanBeMovedAndSnapToTheBest) {
   EXPECT_FALSE(moved.shape == findings[k].effect.shape);
   const Effect best = now.moved(k, now.best_near(k, values));
   EXPECT_GE(now.preview(best).score, now.preview(moved).score - 1e-9);
+  // One alone: the others stay where they were put.
+  const std::vector<double> first = now.best_near(k, values, 0);
+  const Effect by_first = now.moved(k, first);
+  EXPECT_GE(now.preview(by_first).score, now.preview(moved).score - 1e-9);
+  for (std::size_t j = 1; j < values.size(); ++j) {
+    EXPECT_NEAR(first[j], values[j], 1e-9 + 0.1 * parameters[j].step) << parameters[j].unit;
+  }
+  EXPECT_NE(parameters[0].unit, "");
   values.push_back(0.0);
   EXPECT_THROW(static_cast<void>(now.moved(k, values)), std::invalid_argument);
 }
@@ -404,8 +412,8 @@ TEST(Workbench, SaysWhereWhatWasAddedDidNotHelp) {
 }
 
 TEST(Workbench, LegsAreMarkedInTimeOverTheWholeHeight) {
-  const auto state =
-      nlohmann::json::parse(selection_json(begun().now(), free_legs(begun().now(), 2)));
+  const auto state = nlohmann::json::parse(
+      selection_json(begun().now(), begun().log(), free_legs(begun().now(), 2)));
   for (const auto& strip : state.at("strips")) {
     const auto& band = strip.at("layers").at(0);
     ASSERT_EQ(band.at("name"), "chosen");

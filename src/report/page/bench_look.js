@@ -24,7 +24,7 @@ import {by, make, messageOf, selectBy} from './dom.js';
  * @property {boolean} on the model has it
  * @property {Question} ask
  * @property {Card} [card]
- * @property {(text: string) => void} [fault] where to say that it cannot be read
+ * @property {(text: string | null) => void} [fault] where to say that it cannot be read; null: it can
  */
 
 /** @type {(body: object) => Promise<Preview | null>} */
@@ -79,6 +79,19 @@ function showWords(reply, target) {
         rival.verdict;
 }
 
+/**
+ * Nothing is shown of an effect that cannot be read.
+ * @param {string} name
+ */
+export function clear(name) {
+  looked = null;
+  ++asked;
+  by('looked-name').textContent = name;
+  for (const id of ['looked-words', 'looked-saves', 'looked-why', 'duel-words']) by(id).textContent = '';
+  by('sliders').replaceChildren();
+  by('duel-line').hidden = by('add').hidden = by('plot').hidden = true;
+}
+
 /** @param {Target} target */
 async function show(target) {
   const mine = ++asked;
@@ -92,12 +105,14 @@ async function show(target) {
     answers.set(key, reply);
     showWords(reply, target);
     showFigure('plot', reply.chart);
-    target.fault?.('');
+    target.fault?.(null);
     document.documentElement.dataset.looked = target.name;
   } catch (error) {
     if (mine !== asked || (error instanceof Refused && error.status === 409)) return;  // another state is on its way
-    if (target.fault) target.fault(messageOf(error));
-    else by('looked-words').textContent = messageOf(error);
+    if (target.fault) {
+      clear(target.name);
+      target.fault(messageOf(error));
+    } else by('looked-words').textContent = messageOf(error);
   }
 }
 
@@ -117,7 +132,8 @@ function showPinned(target) {
 function sliderOf(target, one, k, values) {
   const input = make('input', {type: 'range', min: String(one.least), max: String(one.most),
                                step: String(one.step / 20), value: String(values[k])});
-  const value = make('output', {textContent: String(+values[k].toPrecision(4))});
+  const text = () => `${+values[k].toPrecision(4)} ${one.unit}`.trim();
+  const value = make('output', {textContent: text()});
   /// With the rival that it was set against meanwhile.
   const withValues = () => {
     const {ask, ...rest} = pinned || target;
@@ -125,12 +141,12 @@ function sliderOf(target, one, k, values) {
   };
   input.addEventListener('input', () => {
     values[k] = Number(input.value);
-    value.textContent = String(+values[k].toPrecision(4));
+    value.textContent = text();
     showPinned(withValues());
   });
   input.addEventListener('change', async () => {
     if (!snaps) return;
-    const reply = await best({version, finding: target.ask.finding, values}).catch(() => null);
+    const reply = await best({version, finding: target.ask.finding, values, only: k}).catch(() => null);
     if (!reply) return;
     reply.values.forEach((at, j) => { values[j] = at; });
     showSliders(target, values);
@@ -194,7 +210,7 @@ export const look = (/** @type {Card} */ card) => show(ofCard(card));
 export const lookOn = (/** @type {OnCard} */ one) => show(ofOn(one));
 export const pinCard = (/** @type {Card} */ card) => pin(ofCard(card));
 export const pinOn = (/** @type {OnCard} */ one) => pin(ofOn(one));
-/** @type {(effect: import('./bench_own.js').OwnEffect, fault: (text: string) => void) => Promise<void>} */
+/** @type {(effect: import('./bench_own.js').OwnEffect, fault: (text: string | null) => void) => Promise<void>} */
 export const pinOwn = (effect, fault) =>
     pin({name: effect.name, on: false, ask: {effect}, fault});
 

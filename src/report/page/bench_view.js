@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The workbench's verdict, map, error, steps and strips of time, as a state has them.
+import {showBar, showNumber} from './bench_bar.js';
 import {by, make, within} from './dom.js';
 import {showChart} from './figure.js';
 
@@ -40,12 +41,13 @@ function showVerdict(state) {
 }
 
 /** @param {BenchState | Selection} views */
-function showError({figure, legs}) {
+function showError(views) {
+  const {figure, legs} = views;
   const some = legs.shown < legs.all;
-  by('figure-now').textContent = figure ? figure.now : '\u2013';
+  showNumber(views);
   by('figure-more').textContent = figure
-      ? `at the end of a leg that no fit has seen (root mean square of ${figure.legs}` +
-        (some ? ' among the chosen' : '') + '). ' +
+      ? `Dead reckoning is off by ${figure.now} at the end of a leg that no fit has seen (root mean ` +
+        `square of ${figure.legs}` + (some ? ' among the chosen' : '') + '). ' +
         `Median ${figure.median}, worst ${figure.worst}` +
         (figure.worst_leg ? ` (${figure.worst_leg})` : '') +
         `. Noise alone would leave ${figure.floor}.`
@@ -79,7 +81,7 @@ function showUnseen(state) {
 /** @param {BenchState} state */
 export function showState(state) {
   showVerdict(state);
-  by('provisional').hidden = !state.provisional;
+  showBar(state);
   showFigure('staircase', state.figure ? state.staircase : null);
   showNoise(state);
   showUnseen(state);

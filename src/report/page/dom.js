@@ -46,6 +46,18 @@ export function make(name, properties = {}, ...children) {
   return element;
 }
 
+/**
+ * @param {string} name
+ * @param {Record<string, string | number>} attributes
+ * @param {...Node} children
+ */
+export function drawn(name, attributes, ...children) {
+  const element = document.createElementNS('http://www.w3.org/2000/svg', name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
+  element.append(...children);
+  return element;
+}
+
 /** What went wrong, in words. */
 export const messageOf = (/** @type {unknown} */ error) =>
     error instanceof Error ? error.message : String(error);

@@ -96,6 +96,7 @@ interface BenchParameter {
   step: number;
   least: number;
   most: number;
+  unit: string;
 }
 
 interface OnCard {
@@ -159,6 +160,11 @@ interface BenchChannel {
   words: string;
 }
 
+interface BenchVariable {
+  name: string;
+  unit: string;
+}
+
 interface BenchState {
   subject: string;
   provisional: boolean;
@@ -171,7 +177,7 @@ interface BenchState {
   cards: Card[];
   unseen: Unseen[];
   noise: BenchNoise;
-  variables: string[];
+  variables: BenchVariable[];
   channels: BenchChannel[];
   staircase: Chart;
   legs: BenchLegs;

@@ -67,7 +67,7 @@ function setBusy(now) {
   /** @type {NodeListOf<HTMLButtonElement>} */
   const buttons = document.querySelectorAll('.act, .step, #add, #own-add');
   for (const button of buttons) {
-    button.disabled = busy || button.dataset.here === 'true';
+    button.disabled = busy || button.dataset.here === 'true' || button.dataset.unread === 'true';
   }
   buttonBy('undo').disabled = busy || !state || state.at === 0;
   buttonBy('redo').disabled = busy || !onward.length;
@@ -94,7 +94,7 @@ async function renew(to) {
   showAll(next);
   const chosen = legs.renew(next, version);
   if (first) {
-    beginOwn(next, {look: look.pinOwn, add: what => { onward = []; step({do: 'add', ...what}); }});
+    beginOwn(next, {look: look.pinOwn, clear: look.clear, add: what => { onward = []; step({do: 'add', ...what}); }});
     performance.mark('first-picture');
   }
   await Promise.all([chosen, look.renew(next, version), noise.renew(next, version)]);
