@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -89,7 +88,7 @@ std::string text(const FixAlignment& fixes) {
       1000.0 * fixes.ahead, 1000.0 * fixes.left, lateness(late));
 }
 
-std::string_view words_of(const CalibratedMounting& mounting) {
+std::string words_of(const CalibratedMounting& mounting) {
   return mounting.of == "tracked" ? "truth's point" : mounting.of;
 }
 
@@ -124,7 +123,7 @@ std::string calibration_text(const WheelCalibration& found, const CalibrationVal
     table.rows.push_back({name, cells.value, "\u00b1 " + cells.error, unit.empty() ? "%" : unit});
   }
   for (const CalibratedMounting& one : found.mountings) {
-    const std::string of(words_of(one));
+    const std::string of = words_of(one);
     row((of + ", ahead of the axle").c_str(), one.x, "m");
     row((of + ", to its left").c_str(), one.y, "m");
     row((of + ", turned to the left").c_str(), one.yaw, "rad");

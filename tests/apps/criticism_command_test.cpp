@@ -5,6 +5,7 @@
 #include "json_file.hpp"
 #include "scratch_folder.hpp"
 #include "shared_data.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -90,6 +91,26 @@ TEST(CriticismCommands, CompareHasTheKeysOfItsFormat) {
     EXPECT_LE(leg["chi2"].get<double>(), before);
     before = leg["chi2"].get<double>();
   }
+}
+
+TEST(CriticismCommands, AToleranceIsPassedOrFailed) {
+  const ScratchFolder scratch;
+  const std::string page = (scratch.path() / "page.html").string();
+  const std::string out = (scratch.path() / "c.json").string();
+  const std::string given = kRiddleFolder + " --model " + kNominal;
+  const Ran failed = run_trussmap("compare " + given + " --tolerance 1mm --json " + out);
+  EXPECT_EQ(failed.status, 1) << failed.output;
+  EXPECT_NE(failed.output.find("failed: legs end "), std::string::npos) << failed.output;
+  const json judged = read_json(out).at("tolerance");
+  EXPECT_FALSE(judged.at("passed").get<bool>());
+  EXPECT_EQ(judged.at("arrival_rms_m"), read_json(out).at("heldout").at("arrival_rms_m"));
+  const Ran passed = run_trussmap("compare " + given + " --tolerance \"90 cm\" --html " + page);
+  EXPECT_EQ(passed.status, 0) << passed.output;
+  const std::string html = read_file(page);
+  EXPECT_NE(html.find("Passed: legs end "), std::string::npos);
+  EXPECT_NE(html.find("trussmap compare "), std::string::npos);
+  EXPECT_EQ(run_trussmap("compare " + given + " --tolerance 3km").status, 2);
+  EXPECT_EQ(run_trussmap("compare " + given + " --tolerance 1mm --holdout 0").status, 2);
 }
 
 TEST(CriticismCommands, ALoneLandmarksOffsetIsNotFittedAndSaysWhy) {

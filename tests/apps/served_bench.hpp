@@ -116,7 +116,7 @@ class ServedBench {
 
   /// Until no step is under way; its status.
   [[nodiscard]] nlohmann::json settled() const {
-    for (int k = 0; k < 6000; ++k) {
+    for (int k = 0; k < 15000; ++k) {
       nlohmann::json now = status();
       if (!now.at("busy").get<bool>()) return now;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));

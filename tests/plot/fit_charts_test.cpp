@@ -33,6 +33,26 @@ TEST(QuantileChart, NormalErrorsLieOnALineWhoseSlopeIsTheirSpread) {
   }
 }
 
+TEST(HistogramChart, SharesAreThoseOfTheSampleAndOfANormalDistribution) {
+  const Chart chart = histogram_chart("h", "H", {normal_sample("wheels", 20000, 1.0)});
+  ASSERT_EQ(chart.layers.size(), 2U);
+  const std::vector<double>& normal = chart.layers[0].columns[1].numbers;
+  const std::vector<double>& seen = chart.layers[1].columns[1].numbers;
+  ASSERT_EQ(seen.size(), 40U);  // both ends of 20 steps
+  double sum = 0.0;
+  for (std::size_t k = 0; k < seen.size(); k += 2) {
+    sum += seen[k];
+    // Binomial: 20000 draws of a share of a fifth have a standard error of 0.28 %.
+    EXPECT_NEAR(seen[k], normal[k], 1.2);
+  }
+  EXPECT_NEAR(sum, 100.0, 1e-9);
+  EXPECT_NEAR(normal[20], 19.1462, 1e-3);  // from 0 to 0.5, of a printed table
+  // What is beyond stands in the outermost steps.
+  const Chart far = histogram_chart("h", "H", {{"range", {-99.0, -2.0, 0.1, 0.2, 77.0}}});
+  EXPECT_NEAR(far.layers[1].columns[1].numbers.front(), 20.0, 1e-9);
+  EXPECT_NEAR(far.layers[1].columns[1].numbers.back(), 20.0, 1e-9);
+}
+
 TEST(QuantileChart, EveryErrorStandsInTheMiddleOfItsShare) {
   // Of five errors each is a fifth: 0.1, 0.3, 0.5, 0.7, 0.9, with the quantiles of a printed table.
   const Chart chart = quantile_chart("q", "Q", {{"range", {-2.0, -1.0, 0.0, 1.0, 2.0}}});

@@ -56,6 +56,34 @@ TEST(Page, HostileNamesStayText) {
   EXPECT_EQ(count(html, "</script"), 5U);
 }
 
+TEST(Page, ItsFootSaysHowItWasMade) {
+  const Provenance from{"trussmap compare '" + std::string(testing::kHostile) + "'", "9.8.7",
+                        "2031-05-06", {{std::string(testing::kHostile), "0123456789abcdef"}}};
+  const std::string html = render_page(with_provenance(Page(page_with("A")), from), kRuntime);
+  const std::size_t foot = html.find("<footer>");
+  ASSERT_NE(foot, std::string::npos);
+  EXPECT_NE(html.find("fingerprint 0123456789abcdef", foot), std::string::npos);
+  EXPECT_NE(html.find("made on", foot), std::string::npos);
+  EXPECT_NE(html.find("version = {9.8.7},\n  year = {2031}", foot), std::string::npos);
+  EXPECT_EQ(html.find("<script>document"), std::string::npos);
+  EXPECT_EQ(html.find("<img"), std::string::npos);
+  EXPECT_EQ(render_page(Page(page_with("A")), kRuntime).find("How this page was made"),
+            std::string::npos);
+}
+
+TEST(Page, AToleranceStandsAboveAllElse) {
+  const Tolerance passed{0.02, 0.0199, 43};
+  EXPECT_EQ(in_words(passed),
+            "passed: legs end 19.9 mm off (root mean square of 43 held out), within the tolerance "
+            "of 20 mm");
+  const Tolerance failed{0.02, 0.0201, 43};
+  const Page page = with_tolerance(Page(page_with("A")), failed);
+  EXPECT_EQ(page.content().tone, Tone::bad);
+  EXPECT_EQ(page.content().answers.front().answer,
+            "Failed: legs end 20.1 mm off (root mean square of 43 held out), beyond the tolerance "
+            "of 20 mm.");
+}
+
 TEST(Page, APartOfAnotherPageHasPicturesAndNoScript) {
   const std::string html = render_section(Page(page_with("A")));
   EXPECT_EQ(count(html, "<script"), 0U);
