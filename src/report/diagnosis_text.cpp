@@ -91,8 +91,8 @@ std::string others_text(const Diagnosis& result, std::size_t count) {
   for (const EventTest& one : result.events) {
     if (one.p_adjusted >= kSignificance || shown >= count) continue;
     if (shown++ == 0) text += "\nSingle events\n";
-    text += fmt::format("  {} {}: {} (score {:.1f}, p {})\n", name_of(one.kind), one.name,
-                        in_words(one), one.score, probability_text(one.p_adjusted));
+    text += fmt::format("  {}: {} (score {:.1f}, p {})\n", name_of(one.kind), in_words(one),
+                        one.score, probability_text(one.p_adjusted));
   }
   return text;
 }

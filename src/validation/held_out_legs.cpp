@@ -3,14 +3,36 @@
 #include "validation/held_out_legs.hpp"
 
 #include "fit/column_builder.hpp"
+#include "geometry/index.hpp"
+#include "recording/time_spans.hpp"
 #include "validation/training.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 #include <utility>
 
 namespace trussmap {
+namespace {
+
+/// Legs in times that are not to be used judge nothing: they stay legs.
+std::set<std::size_t> passed_over(const std::vector<LegSpan>& legs,
+                                  const std::vector<std::vector<TimeSpan>>& excluded) {
+  std::set<std::size_t> numbers;
+  for (const LegSpan& leg : legs) {
+    if (!excluded.empty() && overlaps_any(leg.time, excluded[idx(leg.session)])) {
+      numbers.insert(leg.number);
+    }
+  }
+  return numbers;
+}
+
+void hold_out_no(const std::set<std::size_t>& numbers, std::vector<LegSpan>& legs) {
+  for (LegSpan& leg : legs) leg.held_out = leg.held_out && !numbers.contains(leg.number);
+}
+
+}  // namespace
 
 /// Columns over all measurements, where a fit leaves some out and legs drive through them.
 class HeldOutLegs::OwnColumns {
@@ -64,15 +86,18 @@ class HeldOutLegs::OwnColumns {
 HeldOutLegs::HeldOutLegs(const std::vector<DrivenRecording>& recordings, const FitState& fit,
                          const FitterOptions& options, const LegOptions& leg_options) {
   const bool all = fit.used.left_out.empty();
-  const std::vector<LegSpan> legs =
+  std::vector<LegSpan> legs =
       leg_spans(fit.recordings, all ? fit.problem : whole_problem(fit), leg_options);
+  const std::set<std::size_t> unused = passed_over(legs, fit.used.left_out);
+  hold_out_no(unused, legs);
   if (std::none_of(legs.begin(), legs.end(), [](const LegSpan& leg) { return leg.held_out; })) {
     return;
   }
   const FitState training = fit_without(legs, recordings, fit, options);
   TrainedModel trained = trained_model(training, recordings, options.problem);
   // Delays may have moved sightings, and so the ends of legs.
-  const std::vector<LegSpan> again = leg_spans(trained.recordings, trained.problem, leg_options);
+  std::vector<LegSpan> again = leg_spans(trained.recordings, trained.problem, leg_options);
+  hold_out_no(unused, again);
   LegPredictor predictor(trained, again);
   predictor.run();
   steps_ = predictor.take_steps();
