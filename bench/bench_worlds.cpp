@@ -115,7 +115,7 @@ std::vector<Subject> subjects(const World& world) {
                            "turn scrub",
                            "turn asymmetry",
                            "twist per spin",
-                           "load on both wheels (payload_kg)",
+                           "load on the wheels (payload_kg)",
                            "load on one wheel (payload_kg)",
                            "tyre drift (distance)",
                            "tyre drift (t)",

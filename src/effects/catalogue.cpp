@@ -26,7 +26,7 @@ std::string of_covariate(std::string pattern, std::string_view covariate) {
   return pattern;
 }
 
-/// "load on both wheels (payload_kg)" -> "load on both wheels", "payload_kg".
+/// "load on the wheels (payload_kg)" -> "load on the wheels", "payload_kg".
 struct Named {
   std::string_view name;
   std::string_view brackets;
@@ -122,10 +122,11 @@ const CatalogueEntry* find_entry(std::string_view name) {
 
 const CatalogueRecord* find_record(std::string_view name) {
   name = present_name(name);
+  const std::string_view given = present_name(taken_apart(name).name);
   for (const CatalogueRecord& record : catalogue_records()) {
     const CatalogueEntry& entry = record.entry;
     const bool open = entry.of_covariate() || entry.has_parameters();
-    if (entry.name == name || (open && entry.name == taken_apart(name).name)) return &record;
+    if (entry.name == name || (open && entry.name == given)) return &record;
   }
   return nullptr;
 }

@@ -176,7 +176,7 @@ constexpr EffectDrawing kWheelDrawings[] = {
     {"wheel scale", wheel_scale},
     {"slip with speed", slip_with_speed},
     {"loss per start", loss_per_start},
-    {"load on both wheels", load_on_both},
+    {"load on the wheels", load_on_both},
     {"load on one wheel", load_on_one},
     {"tyre drift", tyre_drift},
     {.name = "backlash", .draw_part = backlash},

@@ -69,7 +69,7 @@ inline std::vector<DisturbedCase> disturbed_cases() {
   add_motion("twist per spin", 0.015, [](const RecordedRow& row) {
     return Travelled{row.ds(), row.dtheta() + (row.spins ? 0.015 : 0.0)};
   });
-  add_motion("load on both wheels (payload_kg)", -0.0008, [=](const RecordedRow& row) {
+  add_motion("load on the wheels (payload_kg)", -0.0008, [=](const RecordedRow& row) {
     const double gain = 1.0 - 0.0008 * row.payload;
     return of_wheels(gain * row.left, gain * row.right);
   });

@@ -96,7 +96,7 @@ TEST(Catalogue, KnowsEveryEffectThatTheProjectNames) {
                            "turn scrub",
                            "turn asymmetry",
                            "twist per spin",
-                           "load on both wheels",
+                           "load on the wheels",
                            "load on one wheel",
                            "tyre drift",
                            "tyre drift (temperature_C)",
@@ -155,6 +155,9 @@ TEST(Catalogue, PlacesAndThresholdsStandInTheName) {
 TEST(Catalogue, FormerNamesStillWork) {
   EXPECT_EQ(catalogue_effect("tyre drift with time").shape.front(), "t");
   EXPECT_EQ(catalogue_effect("tyre drift with distance").shape.front(), "distance");
+  const Effect load = catalogue_effect("load on both wheels (payload_kg)");
+  EXPECT_EQ(load.name, "load on the wheels (payload_kg)");
+  EXPECT_EQ(load.shape.front(), "payload_kg");
 }
 
 TEST(Catalogue, ParametersGoThroughANameWithoutLoss) {

@@ -94,7 +94,7 @@ TEST(CorrectedOdometry, IsDeadReckoningByTheModelRowByRow) {
       {"wheel scale", {0.02}},
       {"travel scale", {-0.01}},
       {"wheel diameter ratio", {0.004}},
-      {"load on both wheels (payload_kg)", {0.002}},
+      {"load on the wheels (payload_kg)", {0.002}},
       {"load on one wheel (payload_kg)", {0.001}},
       {"heading drift", {0.002}},
       {"constant creep", {0.02}},

@@ -64,9 +64,9 @@ std::string message_of(const Model& model, const OdometryInputs& inputs = {}) {
 }
 
 TEST(CorrectedOdometry, NamesTheEffectThatCannotBeApplied) {
-  const Effect load = catalogue_effect("load on both wheels (payload_kg)", {0.002});
+  const Effect load = catalogue_effect("load on the wheels (payload_kg)", {0.002});
   const std::string message = message_of(with({load}));
-  EXPECT_NE(message.find("effect \"load on both wheels (payload_kg)\""), std::string::npos);
+  EXPECT_NE(message.find("effect \"load on the wheels (payload_kg)\""), std::string::npos);
   EXPECT_NE(message.find("which the robot does not supply"), std::string::npos);
   EXPECT_NE(message_of(with({load}), {{"load_kg"}, false}).find("distance"), std::string::npos);
   EXPECT_EQ(message_of(with({load}), {{"payload_kg"}, false}), "");

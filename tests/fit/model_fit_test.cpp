@@ -189,7 +189,7 @@ TEST(ModelFit, AnOwnFormulaEqualToABuiltInGivesTheSame) {
       {"turn scrub", Channel::turn, {"max(turn_rate, -turn_rate)"}},
       {"hard iron", Channel::compass, {"-sin(-heading)", "cos(-heading)"}},
       {"wheel scale", Channel::wheels, {"3 - 2"}},
-      {"load on both wheels (payload_kg)", Channel::wheels, {"2 * payload_kg / 2"}},
+      {"load on the wheels (payload_kg)", Channel::wheels, {"2 * payload_kg / 2"}},
       {"lever arm", Channel::lever, {"1 + 0*speed"}}};
   for (const Twin& twin : twins) {
     const FitState built_in =

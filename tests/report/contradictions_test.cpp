@@ -238,7 +238,7 @@ TEST(Contradictions, AreFoundWhereTheyAre) {
   const Known gyro{true};
   const std::vector<std::string> wrong{
       "after 30 s 90 % is turning error; a gyro would help most",
-      "  load on both wheels (temperature_C)  wheels x temperature_C",
+      "  load on the wheels (temperature_C)  wheels x temperature_C",
       "Legs end 3.1 cm off, as good as this robot's noise allows. Something is still unexplained.",
       "consistent: nothing found; but the misfit is not explained",
       "consistent: 4 effects found, one by one\n  a: b\n  c: d\n  e: f\n\n",

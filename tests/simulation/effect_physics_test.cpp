@@ -45,7 +45,7 @@ std::vector<Case> cases() {
           {"turn scrub", {-0.045}},
           {"turn asymmetry", {0.02}},
           {"twist per spin", {0.02}},
-          {"load on both wheels (payload_kg)", {-0.0005}},
+          {"load on the wheels (payload_kg)", {-0.0005}},
           {"load on one wheel (payload_kg)", {-0.0004}},
           {"tyre drift (temperature_C)", {0.0005}},
           {"tyre drift (t)", {1e-5}},

@@ -96,9 +96,9 @@ TEST(EffectWords, AFactorOfEverydayIsSaidToBeOne) {
 }
 
 TEST(EffectWords, ALoadIsInKilograms) {
-  const Effect load{"load on both wheels (payload_kg)", Channel::wheels, {"payload_kg"}, {0.002}};
+  const Effect load{"load on the wheels (payload_kg)", Channel::wheels, {"payload_kg"}, {0.002}};
   EXPECT_TRUE(in_words(load, {0.0001}).ends_with(" per kg of payload")) << in_words(load, {0.0001});
-  const Effect lights{"load on both wheels (lights)", Channel::wheels, {"lights"}, {0.002}};
+  const Effect lights{"load on the wheels (lights)", Channel::wheels, {"lights"}, {0.002}};
   EXPECT_TRUE(in_words(lights, {0.0001}).ends_with(" per unit of lights"));
 }
 

@@ -34,7 +34,7 @@ TEST(SeparatingDrive, HasItsOwnAdviceWhereNothingGoesWithTime) {
             std::string::npos);
   // Two covariates of a slow kind: nothing about time.
   EXPECT_EQ(separating_drive(catalogue_effect("compass disturbance (a)"),
-                             catalogue_effect("load on both wheels (b)"), {"a", "b"})
+                             catalogue_effect("load on the wheels (b)"), {"a", "b"})
                 .find("stand for some minutes"),
             std::string::npos);
 }
@@ -53,7 +53,7 @@ TEST(SeparatingDrive, WheelsTurnTheRobotTooAndTravelDoesNot) {
 
 TEST(SeparatingDrive, AsksNothingToVaryApartFromItself) {
   const std::string drive = separating_drive(catalogue_effect("compass disturbance (load)"),
-                                             catalogue_effect("load on both wheels (load)"), {});
+                                             catalogue_effect("load on the wheels (load)"), {});
   EXPECT_EQ(drive.find("independently"), std::string::npos) << drive;
   EXPECT_NE(drive.find("compass"), std::string::npos) << drive;
   // Constants go with nothing that could vary.
