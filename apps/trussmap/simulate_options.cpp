@@ -114,6 +114,9 @@ void add_wheel_options(const Command& command, SimulateOptions& options) {
   command.add_option("--wheel-left", options.wheel_left,
                      "How far to the left of the rear axle's centre the measured wheel of an "
                      "ackermann robot is [m]");
+  command.add_option("--steer-left", options.steer_left,
+                     "How far to the left of the middle the wheel is whose steering angle is read "
+                     "(tricycle, ackermann) [m]");
 }
 
 void add_noise_options(const Command& command, SimulateOptions& options) {
@@ -215,6 +218,7 @@ void check_drive_options(const Command& command, const SimulateOptions& options)
   refuse_unless("--wheelbase", {"differential", "unicycle", "skid-steer", "mecanum"});
   refuse_unless("--length", {"tricycle", "ackermann", "omni3", "mecanum", "wheels"});
   refuse_unless("--wheel-left", {"ackermann"});
+  refuse_unless("--steer-left", {"tricycle", "ackermann"});
   refuse_unless("--steer-noise", {"tricycle", "ackermann"});
 }
 

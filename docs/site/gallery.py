@@ -61,6 +61,9 @@ CHANNELS = {
     "fix_delay": r"t_{\text{stamp}} = t + g",
     "sideways": r"\mathrm{d}s'_{\text{left}} = \mathrm{d}s_{\text{left}}\,(1+g)",
     "steer": r"\beta' = \beta + g",
+    "wheel_left": r"y_{\text{measured}} = y_{\text{stated}} + g",
+    "steer_left": r"y_{\text{steered}} = y_{\text{stated}} + g",
+    "other_axle": r"\mathrm{d}w' = (1-g)\,\mathrm{d}w + g\,\mathrm{d}w_{\text{other axle}}",
     "steer_gain": r"\beta' = \beta\,(1+g)",
     **{f"wheel{k}": rf"\mathrm{{d}}w_{k}' = \mathrm{{d}}w_{k}\,(1+g)" for k in range(1, 7)},
 }

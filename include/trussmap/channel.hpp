@@ -17,6 +17,10 @@
 //   scanner, scanner_left, scanner_yaw   where what loops are of sits on the robot, and looks
 //   sideways          travel to the left (1 + g)   wheel1 ... wheel6     that wheel's (1 + g)
 //   steer             steering angle + g           steer_gain            steering angle (1 + g)
+//   wheel_left        the wheel whose travel is read stands g further left than stated
+//   steer_left        the wheel whose steering angle is read does
+//   other_axle        travel is by a share g that of the steered wheel instead of the rear one, or
+//                     the other way round
 //   fix_delay         fixes are stamped g late                fix_x, fix_y    fix = position + g
 //
 // In code a channel is this enumeration; its name stands in files, options and reports alone.
@@ -68,7 +72,10 @@ enum class Channel {
   sighting_yaw,
   scanner,
   scanner_left,
-  scanner_yaw
+  scanner_yaw,
+  wheel_left,
+  steer_left,
+  other_axle
 };
 
 /// wheel1 is 0, wheel6 is 5; nothing of other channels.

@@ -36,9 +36,13 @@ struct WheelTravel {
 ///                                              two wheels that are `wheelbase` apart
 ///   skid_steer     w = left ones, right ones   the same of their means; `wheelbase` is the
 ///                                              effective one
-///   tricycle       w = of the steered wheel    f = w cos b, a = w sin b/length
-///   ackermann      w = of a rear wheel         f = w/(1 - y k), a = f k, k = tan(b)/length, with
-///                                              the wheel y to the left of the rear axle's centre
+///   tricycle       w = of the steered wheel    f = w (cos b + sin b z/length),
+///                                              a = w sin b/length
+///   ackermann      w = of a rear wheel         f = w/(1 - y k), a = f k,
+///                                              k = tan b/(length + z tan b), with the wheel y to
+///                                              the left of the rear axle's centre; both: with the
+///                                              wheel whose angle is read z to the left of the
+///                                              middle
 ///   omni3          w = front right, front      f = (w2 - w1)/sqrt 3, s = (2 w3 - w1 - w2)/3,
 ///                  left, rear                  a = -(w1 + w2 + w3)/(3 length); 120 degrees apart,
 ///                                              w positive where it turns the robot clockwise
@@ -100,6 +104,7 @@ struct Robot {
   /// wheel, mecanum from the front axle to the rear one.
   double length = 0.0;
   double wheel_left = 0.0;              ///< m, ackermann: the measured wheel's y
+  double steer_left = 0.0;              ///< m, tricycle and ackermann: the steered wheel's y
   std::vector<WheelPlace> places = {};  ///< of `wheels`; empty: the matrix is given
   Eigen::MatrixXd matrix = {};          ///< of `wheels`: 3 x columns
   Mountings mounted = {};               ///< its sensors
@@ -129,6 +134,9 @@ struct WheelColumn {
   std::vector<double> reading;  ///< m, signed travel; rad where it steers
   /// d(forward [m], sideways [m, to the left], turn [rad])/d(reading), per row.
   std::vector<std::array<double, 3>> by_reading;
+  /// Of what steers, where effects have it turn further: rad per rad read, per row; by_reading is
+  /// by what it turns.
+  std::vector<double> gain = {};
 };
 
 /// A drive as motion of its robot's body, row by row: by the wheels as with_wheels makes it; then

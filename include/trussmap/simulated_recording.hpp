@@ -32,6 +32,7 @@ struct SimulationSettings {
   double wheelbase = 0.34;        ///< m
   double length = 0.0;            ///< m; 0: the drive's usual one
   double wheel_left = 0.0;        ///< m, of ackermann
+  double steer_left = 0.0;        ///< m, of tricycle and ackermann
   double steer_noise = 0.005;     ///< rad m^1/2
   double wheel_noise = 0.003;     ///< m^1/2
   double compass_noise = 0.02;    ///< rad

@@ -47,6 +47,7 @@ const std::map<std::string, Member>& members() {
       {"wheelbase", &S::wheelbase},
       {"length", &S::length},
       {"wheel_left", &S::wheel_left},
+      {"steer_left", &S::steer_left},
       {"steer_noise", &S::steer_noise},
       {"wheel_noise", &S::wheel_noise},
       {"compass_noise", &S::compass_noise},

@@ -106,6 +106,14 @@ void add_sensors(const Robot& robot, const ChannelGains& gains, const DriveScale
   if (!result.empty() && result.back().name == "sideways") result.back().of.push_back(travel);
   add("steering offset", "rad", g(steer), steer, "add it to the angle, after the gain");
   add("steering gain", "times", 1.0 + g(steer_gain), steer_gain, "the angle");
+  add("measured wheel left", "m", scales.length * (robot.wheel_left + g(wheel_left)), wheel_left,
+      "of the rear axle's centre: the travel is that of this wheel");
+  add("steered wheel left", "m", scales.length * (robot.steer_left + g(steer_left)), steer_left,
+      "of the middle: the angle is that of this wheel");
+  add("other axle", "times", g(other_axle) / scales.wheels, other_axle,
+      robot.drive == DriveKind::tricycle
+          ? "1: the travel is the rear axle's (drive ackermann), 0: the steered wheel's"
+          : "1: the travel is the steered wheel's (drive tricycle), 0: the rear axle's");
   add("gyro scale", "times", 1.0 + g(gyro_scale), gyro_scale, "the rate, after the bias");
   add("gyro bias", "rad/s", g(gyro) / (1.0 + g(gyro_scale)), gyro, "subtract it");
   constexpr const char* kOfAxle = "of the axle's centre";

@@ -4,6 +4,7 @@
 
 #include "calibration/start_by_turns.hpp"
 #include "drive/body_motion.hpp"
+#include "drive/steered_motion.hpp"
 #include "odometry/merge.hpp"
 #include "statistics/median.hpp"
 #include "trussmap/dead_reckoning.hpp"
@@ -167,15 +168,31 @@ Course course_of(const DrivenRecording& recording, const Robot& robot) {
   return course;
 }
 
+/// A step as it is with these constants.
+BodyMotion step_with(const GrossStart& tried, const BodyMotion& one, const Robot& robot) {
+  const double wheelbase = robot.wheelbase;
+  const double d = tried.difference;
+  if (tried.steer == 0.0) {
+    return {one.forward + 0.25 * d * wheelbase * one.turn, one.sideways,
+            (1.0 + tried.turn) * (one.turn + d * one.forward / wheelbase)};
+  }
+  // As the steered wheel goes: ahead, and round the middle of the rear axle.
+  const Vector2 steered = rotation(tried.steer) * Vector2(one.forward, robot.length * one.turn);
+  const double turn = (1.0 + tried.turn) * steered.y() / robot.length;
+  if (robot.drive == DriveKind::tricycle) return {steered.x(), 0.0, turn};
+  // The travel is that of the rear axle; nearly across nothing is known of it.
+  constexpr double kLeastShare = 0.1;
+  const double share = std::max(steered.x() / one.forward, kLeastShare);
+  return {one.forward, 0.0, one.forward == 0.0 ? 0.0 : turn / share};
+}
+
 /// The robot's poses after each step with these constants.
 std::vector<Pose> poses_with(const GrossStart& tried, const std::vector<BodyMotion>& steps,
-                             double wheelbase) {
+                             const Robot& robot) {
   std::vector<Pose> poses(1);
   poses.reserve(steps.size() + 1);
   for (const BodyMotion& one : steps) {
-    const double d = tried.difference;
-    const BodyMotion body{one.forward + 0.25 * d * wheelbase * one.turn, one.sideways,
-                          (1.0 + tried.turn) * (one.turn + d * one.forward / wheelbase)};
+    const BodyMotion body = step_with(tried, one, robot);
     const Pose& at = poses.back();
     const Vector2 way =
         rotation(at.heading + 0.5 * body.turn) * Vector2(body.forward, body.sideways);
@@ -190,8 +207,7 @@ Vector2 seen_from(const Pose& pose, const Mark& mark) {
 
 class Disagreement {
  public:
-  Disagreement(const std::vector<DrivenRecording>& recordings, const Robot& robot)
-      : wheelbase_(robot.wheelbase) {
+  Disagreement(const std::vector<DrivenRecording>& recordings, const Robot& robot) : robot_(robot) {
     constexpr std::size_t kFewestChords = 6;
     constexpr std::size_t kFewestReturns = 3;
     std::size_t chords = 0;
@@ -217,7 +233,7 @@ class Disagreement {
   [[nodiscard]] double of_chords(const GrossStart& tried) const {
     std::vector<double> ratios;
     for (const Course& course : courses_) {
-      const std::vector<Pose> poses = poses_with(tried, course.steps, wheelbase_);
+      const std::vector<Pose> poses = poses_with(tried, course.steps, robot_);
       for (const Chord& one : course.chords) {
         const Mark& from = course.marks[one.from];
         const Mark& to = course.marks[one.to];
@@ -236,7 +252,7 @@ class Disagreement {
     double sum = 0.0;
     std::size_t count = 0;
     for (const Course& course : courses_) {
-      const std::vector<Pose> poses = poses_with(tried, course.steps, wheelbase_);
+      const std::vector<Pose> poses = poses_with(tried, course.steps, robot_);
       for (const Chord& one : course.returns) {
         const Mark& from = course.marks[one.from];
         const Mark& to = course.marks[one.to];
@@ -253,34 +269,45 @@ class Disagreement {
     return sum / static_cast<double>(count);
   }
 
-  double wheelbase_ = 0.0;
+  const Robot& robot_;
   std::vector<Course> courses_;
   bool by_chords_ = false;
   bool tells_ = false;
 };
 
+/// What is tried beside a factor of turning.
+enum class Beside { nothing, ratio, offset };
+
+Beside beside_turning(const std::vector<DrivenRecording>& recordings, const Robot& robot) {
+  if (has_steering(robot)) return Beside::offset;
+  return recordings.front().drive.of_two_wheels() ? Beside::ratio : Beside::nothing;
+}
+
 struct Rated {
-  double log_turn = 0.0;   ///< of turning over what is stated
-  double log_ratio = 0.0;  ///< of right wheel over left
+  double log_turn = 0.0;  ///< of turning over what is stated
+  double other = 0.0;     ///< log of right wheel over left; rad, of an offset
   double disagreement = 0.0;
 
-  [[nodiscard]] GrossStart start() const {
-    return {std::expm1(log_turn), 2.0 * std::tanh(0.5 * log_ratio)};
+  [[nodiscard]] GrossStart start(Beside beside) const {
+    if (beside == Beside::offset) return {std::expm1(log_turn), 0.0, other};
+    return {std::expm1(log_turn), 2.0 * std::tanh(0.5 * other), 0.0};
   }
 };
 
 constexpr double kTurnStep = 0.04;  // of the grid, in log_turn
-constexpr double kRatioStep = 0.03;
+constexpr double kOtherStep = 0.03;
 
 /// The grid, best first.
-std::vector<Rated> rated_grid(const Disagreement& disagreement, bool two_wheels) {
+std::vector<Rated> rated_grid(const Disagreement& disagreement, Beside beside) {
   constexpr int kTurns = 42;  // either way: a factor of 5.4
   constexpr int kRatios = 54;
+  constexpr int kOffsets = 12;
+  const int others = beside == Beside::ratio ? kRatios : beside == Beside::offset ? kOffsets : 0;
   std::vector<Rated> grid;
   for (int a = -kTurns; a <= kTurns; ++a) {
-    for (int b = two_wheels ? -kRatios : 0; b <= (two_wheels ? kRatios : 0); ++b) {
-      Rated one{kTurnStep * a, kRatioStep * b};
-      one.disagreement = disagreement.of(one.start());
+    for (int b = -others; b <= others; ++b) {
+      Rated one{kTurnStep * a, kOtherStep * b};
+      one.disagreement = disagreement.of(one.start(beside));
       grid.push_back(one);
     }
   }
@@ -290,17 +317,17 @@ std::vector<Rated> rated_grid(const Disagreement& disagreement, bool two_wheels)
 }
 
 /// Downhill between the points of the grid, by ever shorter steps.
-Rated descended(const Disagreement& disagreement, Rated at, bool two_wheels) {
+Rated descended(const Disagreement& disagreement, Rated at, Beside beside) {
   constexpr int kHalvings = 5;
   double share = 0.5;
   for (int round = 0; round < kHalvings; ++round, share *= 0.5) {
     const Rated before = at;
     for (const double sign : {1.0, -1.0}) {
-      for (const bool ratio : {false, true}) {
-        if (ratio && !two_wheels) continue;
+      for (const bool other : {false, true}) {
+        if (other && beside == Beside::nothing) continue;
         Rated next = before;
-        (ratio ? next.log_ratio : next.log_turn) += sign * share * (ratio ? kRatioStep : kTurnStep);
-        next.disagreement = disagreement.of(next.start());
+        (other ? next.other : next.log_turn) += sign * share * (other ? kOtherStep : kTurnStep);
+        next.disagreement = disagreement.of(next.start(beside));
         if (next.disagreement < at.disagreement) at = next;
       }
     }
@@ -316,23 +343,23 @@ std::vector<GrossStart> starts_by_places(const std::vector<DrivenRecording>& rec
   const Disagreement disagreement(recordings, robot);
   if (!disagreement.tells()) return {};
   std::vector<Rated> kept;
-  const bool two_wheels = recordings.front().drive.of_two_wheels();
+  const Beside beside = beside_turning(recordings, robot);
   const double as_stated = disagreement.of({});
-  for (const Rated& one : rated_grid(disagreement, two_wheels)) {
+  for (const Rated& one : rated_grid(disagreement, beside)) {
     const bool near = std::any_of(kept.begin(), kept.end(), [&one](const Rated& other) {
       return std::abs(one.log_turn - other.log_turn) < kNear &&
-             std::abs(one.log_ratio - other.log_ratio) < kNear;
+             std::abs(one.other - other.other) < kNear;
     });
     if (near) continue;
     if (one.disagreement > kMuchBetter * as_stated) break;
-    if (std::abs(one.log_turn) < kNearTurn && std::abs(one.log_ratio) < kNearRatio) break;
+    if (std::abs(one.log_turn) < kNearTurn && std::abs(one.other) < kNearRatio) break;
     kept.push_back(one);
     if (kept.size() == kMostStarts) break;
   }
   std::vector<GrossStart> starts;
   starts.reserve(kept.size());
   for (const Rated& one : kept) {
-    starts.push_back(descended(disagreement, one, two_wheels).start());
+    starts.push_back(descended(disagreement, one, beside).start(beside));
   }
   return starts;
 }

@@ -17,6 +17,8 @@
 #include <set>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace trussmap {
 namespace {
 
@@ -237,7 +239,10 @@ KnownGains known_of(const Model& before, const WheelCalibration& found) {
                        [&effect](const SoughtConstant& one) { return one.name == effect.name; });
   });
   KnownGains known;
-  for (const SoughtConstant& one : sought) known.asked.insert(one.channel);
+  for (const SoughtConstant& one : sought) {
+    const bool there = std::ranges::count(found.channels, one.channel) > 0;
+    if (!one.seldom || there) known.asked.insert(one.channel);
+  }
   known.unknown = known.asked;
   for (const Channel channel : found.channels) known.unknown.erase(channel);
   known.channels = found.channels;
@@ -281,6 +286,22 @@ void add_places(const std::vector<CalibratedMounting>& found, const Model& befor
     add("ahead", "m", was.x, one.x, "of the axle's centre");
     add("left", "m", was.y, one.y, "of the axle's centre");
     add("yaw", "rad", was.yaw, one.yaw, "to the left of ahead");
+  }
+}
+
+/// Any point of the rear axle goes straight ahead: which one is the middle no motion tells.
+void doubt_sides(const WheelCalibration& found, RobotConstants& result) {
+  const bool sensors = std::ranges::any_of(
+      found.mountings, [](const CalibratedMounting& one) { return one.y.has_value(); });
+  for (const auto& [name, other] :
+       {std::pair("measured wheel left", "steered"), std::pair("steered wheel left", "measured")}) {
+    const auto at = std::ranges::find(result.list, name, &RobotConstant::name);
+    if (!sensors || at == result.list.end() || !at->determined) continue;
+    result.doubts.push_back(fmt::format(
+        "wheels and sensors are told from each other to the left, not from the middle: it may as "
+        "well be the {} wheel that is {:.3g} m to the {}, and all sensors with it",
+        other, std::abs(at->after), at->after > 0.0 ? "right" : "left"));
+    return;
   }
 }
 
@@ -354,6 +375,7 @@ RobotConstants robot_constants(const Model& before, const std::vector<EffectEsti
 RobotConstants robot_constants(const Model& before, const WheelCalibration& found) {
   const KnownGains known = known_of(before, found);
   RobotConstants result = told(before, known);
+  doubt_sides(found, result);
   add_places(found.mountings, before, result.list);
   add_fixes(found.fixes, before, result.list);
   for (const auto& [name, noise, old] :
@@ -375,36 +397,6 @@ RobotConstants robot_constants(const Model& before, const std::vector<SquareRoun
   const bool measured = rounds.front().setup.scale.dof > 0.0 ||
                         corrections_after(rounds.back(), method).errors.scale != 1.0;
   return told(before, known_of(before.robot, rounds.back(), method, measured));
-}
-
-Model with_wheelbase_in_robot(Model model) {
-  Robot& robot = model.robot;
-  const bool has_length = robot.drive != DriveKind::wheels &&
-                          (robot.drive != DriveKind::ackermann || robot.wheel_left == 0.0);
-  const std::vector<SoughtConstant> sought = sought_constants(robot);
-  std::vector<Effect*> found;
-  ChannelGains in_turn;
-  for (Effect& effect : model.effects) {
-    const bool is_sought =
-        std::any_of(sought.begin(), sought.end(), [&effect](const SoughtConstant& one) {
-          return one.name == effect.name && one.channel == effect.channel;
-        });
-    if (!is_sought || !effect.is_constant() || effect.per_session || effect.coefficients.empty()) {
-      continue;
-    }
-    double& g = effect.coefficients.front();
-    if (effect.channel == Channel::turn && has_length && 1.0 + g > 0.0 && g != 0.0) {
-      robot.wheelbase /= 1.0 + g;
-      robot.length /= 1.0 + g;
-      robot.wheelbase_stated = true;
-      g = 0.0;
-    }
-    in_turn[effect.channel] = g;
-    found.push_back(&effect);
-  }
-  const ChannelGains gains = side_by_side(robot, in_turn);
-  for (Effect* one : found) one->coefficients = {gain_of(gains, one->channel)};
-  return model;
 }
 
 }  // namespace trussmap

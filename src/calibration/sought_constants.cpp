@@ -78,6 +78,34 @@ SoughtConstant steering_gain_constant() {
           .missing_without_distance = kMissing};
 }
 
+/// Of wheels that are not those that the model says; none is a factor.
+SoughtConstant place_constant(const char* name, Channel channel, const char* symbol) {
+  constexpr const char* kMissing =
+      "the robot bends too little, or to one side alone; drive sharp bends, both ways";
+  return {.name = name,
+          .channel = channel,
+          .symbol = symbol,
+          .missing = kMissing,
+          .missing_without_distance = kMissing,
+          .seldom = true,
+          .ratio = [](double) { return 1.0; }};
+}
+
+SoughtConstant measured_place_constant() {
+  return place_constant("travel read beside the middle", Channel::wheel_left,
+                        "the measured wheel's place to the left");
+}
+
+SoughtConstant steered_place_constant() {
+  return place_constant("angle read beside the middle", Channel::steer_left,
+                        "the steered wheel's place to the left");
+}
+
+SoughtConstant other_axle_constant() {
+  return place_constant("travel read at the other axle", Channel::other_axle,
+                        "the other axle's share of the travel");
+}
+
 }  // namespace
 
 double SoughtConstant::slope(double g) const {
@@ -92,9 +120,12 @@ std::vector<SoughtConstant> sought_constants(const Robot& robot) {
     case DriveKind::unicycle:
       return {turn_constant(), scale_constant()};
     case DriveKind::tricycle:
+      return {steering_offset_constant(), turn_constant(),          scale_constant(),
+              steering_gain_constant(),   steered_place_constant(), other_axle_constant()};
     case DriveKind::ackermann:
-      return {steering_offset_constant(), turn_constant(), scale_constant(),
-              steering_gain_constant()};
+      return {steering_offset_constant(), turn_constant(),           scale_constant(),
+              steering_gain_constant(),   measured_place_constant(), steered_place_constant(),
+              other_axle_constant()};
     default:
       break;
   }
@@ -129,7 +160,18 @@ bool shows_scale(Channel channel) {
   return channel == Channel::wheels || channel == Channel::wheel1;
 }
 
+std::vector<Channel> seldom_constants(const Robot& robot) {
+  std::vector<Channel> result;
+  for (const SoughtConstant& one : sought_constants(robot)) {
+    if (one.seldom) result.push_back(one.channel);
+  }
+  return result;
+}
+
 double useless_sd(const SoughtConstant& one, const Model& model) {
+  constexpr double kUselessShare = 0.25;
+  if (one.channel == Channel::other_axle) return kUselessShare;
+  if (one.seldom) return kUseless * model.robot.length;
   if (one.channel != Channel::steer_gain) return kUseless;
   for (const Effect& effect : model.effects) {
     if (effect.name == one.name) return kUselessGain * std::abs(1.0 + effect.coefficients[0]);
@@ -166,6 +208,7 @@ Model with_constants(const Model& model, const std::vector<double>& g) {
                        [&effect](const SoughtConstant& one) { return one.name == effect.name; });
   });
   for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (constants[k].seldom && g[k] == 0.0) continue;
     result.effects.push_back({constants[k].name, constants[k].channel, {"1"}, {g[k]}, false});
   }
   return result;

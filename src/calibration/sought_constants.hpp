@@ -28,6 +28,8 @@ struct SoughtConstant {
       "robot can, and turn";
   const char* missing_without_distance =  ///< ... and where nothing tells a distance
       "nothing in use measures a distance; add a survey, truth, or loops between poses far apart";
+  /// What few robots have: sought where that explains what is left without it.
+  bool seldom = false;
   /// E_d, E_b and E_s, or the like; of a steering offset how much of the wheel's way is left.
   double (*ratio)(double g) = [](double g) { return 1.0 + g; };
   /// What was found on corrected rows, more, beside what was in force: of a reading, which stays as
@@ -45,6 +47,9 @@ using Wanted = std::vector<bool>;
 
 /// Without a measured distance a smaller map has smaller errors: the drive's scale is then unknown.
 [[nodiscard]] bool shows_scale(Channel channel);
+
+/// The channels of those that few robots have.
+[[nodiscard]] std::vector<Channel> seldom_constants(const Robot& robot);
 
 /// The standard error from which on a constant is none.
 [[nodiscard]] double useless_sd(const SoughtConstant& one, const Model& model);

@@ -11,12 +11,12 @@
 #include "calibration/sought_constants.hpp"
 #include "drive/well_formed.hpp"
 #include "estimation/recording_adjustment.hpp"
+#include "fit/effect_columns.hpp"
 #include "odometry/effect_correction.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -58,6 +58,17 @@ struct Fitted {
   RecordingAdjustment adjustment;
 };
 
+/// `next`, or so much of the way to it as leaves the measured wheel a way ahead in every row.
+std::vector<double> shortened(const std::vector<double>& g, std::vector<double> next,
+                              const std::vector<DrivenRecording>& recordings, const Model& model) {
+  constexpr int kHalvings = 20;
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    if (leave_a_way(with_constants(model, next).effects, recordings, model.robot, {})) return next;
+    for (std::size_t k = 0; k < g.size(); ++k) next[k] = 0.5 * (g[k] + next[k]);
+  }
+  return g;
+}
+
 Fitted fit(const std::vector<DrivenRecording>& recordings, const Model& model, const Wanted& wanted,
            const WheelCalibrationOptions& options, const References& references) {
   Fitted result;
@@ -94,6 +105,19 @@ std::string undetermined_text(const SoughtConstant& one, bool scale) {
   return one.symbol + ": " + (scale ? one.missing : one.missing_without_distance);
 }
 
+bool is_asked(const SoughtConstant& one, const WheelCalibrationOptions& options) {
+  return !one.seldom || std::ranges::count(options.seldom, one.channel) > 0;
+}
+
+Wanted asked_for(const std::vector<SoughtConstant>& constants, bool scale,
+                 const WheelCalibrationOptions& options) {
+  Wanted wanted;
+  for (const SoughtConstant& one : constants) {
+    wanted.push_back((scale || !shows_scale(one.channel)) && is_asked(one, options));
+  }
+  return wanted;
+}
+
 /// Which of them the motion determines: each alone, then jointly.
 Wanted determined(const std::vector<DrivenRecording>& recordings, const Model& model,
                   const WheelCalibrationOptions& options, const ReferencesUsed& used,
@@ -102,8 +126,7 @@ Wanted determined(const std::vector<DrivenRecording>& recordings, const Model& m
   // Without a measured distance the least chi^2 lies at a smaller map: its errors shrink with it.
   const bool scale = measures_distance(recordings, options.problem, model.noise);
   const std::vector<SoughtConstant> constants = sought_constants(model.robot);
-  Wanted wanted;
-  for (const SoughtConstant& one : constants) wanted.push_back(scale || !shows_scale(one.channel));
+  Wanted wanted = asked_for(constants, scale, options);
   const auto can = [&](const Wanted& these) {
     try {
       const Fitted one = fit(recordings, model, these, options, references);
@@ -127,7 +150,7 @@ Wanted determined(const std::vector<DrivenRecording>& recordings, const Model& m
   wanted.assign(constants.size(), false);
   static_cast<void>(fit(recordings, model, wanted, options, references));
   for (std::size_t k = 0; k < constants.size(); ++k) {
-    if (shows_scale(constants[k].channel) && !scale) continue;
+    if ((shows_scale(constants[k].channel) && !scale) || !is_asked(constants[k], options)) continue;
     Wanted more = wanted;
     more[k] = true;
     if (can(more)) {
@@ -249,10 +272,7 @@ ReferencesUsed told_in(const std::vector<DrivenRecording>& recordings, const Mod
   ReferencesUsed used = references_in(recordings, options.problem);
   if (!used.sensor && !used.scanner) return used;
   const bool scale = measures_distance(recordings, options.problem, model.noise);
-  Wanted wanted;
-  for (const SoughtConstant& one : sought_constants(model.robot)) {
-    wanted.push_back(scale || !shows_scale(one.channel));
-  }
+  const Wanted wanted = asked_for(sought_constants(model.robot), scale, options);
   const ReferencesUsed all = used;
   used.sensor = used.scanner = false;
   try {
@@ -270,7 +290,8 @@ ReferencesUsed told_in(const std::vector<DrivenRecording>& recordings, const Mod
   return used;
 }
 
-/// From these values of the constants on.
+}  // namespace
+
 WheelCalibration calibrated_from(std::vector<double> g,
                                  const std::vector<DrivenRecording>& recordings, const Model& model,
                                  const WheelCalibrationOptions& options) {
@@ -291,7 +312,8 @@ WheelCalibration calibrated_from(std::vector<double> g,
   for (const bool noise : {options.noise, false}) {
     for (int round = 0; round < kRounds; ++round) {
       last = fit(recordings, result.model, wanted, options, references);
-      g = refined(g, wanted, model.robot, last.adjustment.coefficients);
+      g = shortened(g, refined(g, wanted, model.robot, last.adjustment.coefficients), recordings,
+                    result.model);
       result.model = with_constants(result.model, g);
       references.found =
           alignment_by(last, geometry, recordings, result.model.robot, references.used, options);
@@ -311,17 +333,7 @@ WheelCalibration calibrated_from(std::vector<double> g,
   return result;
 }
 
-/// Whether a start from this gain may be believed: it led somewhere, and not far away.
-bool led_nearby(const WheelCalibration& found, double start) {
-  constexpr double kFar = 1.7;  // starts within it of the gain that is found lead there
-  if (!found.settled) return false;
-  for (const DriveConstant& one : found.constants) {
-    if (one.channel != Channel::steer_gain) continue;
-    const double ratio = (1.0 + one.g.value) / (1.0 + start);
-    return ratio < kFar && ratio > 1.0 / kFar;
-  }
-  return true;
-}
+namespace {
 
 /// The stated constants with those of a start in their place.
 std::vector<double> at_start(std::vector<double> g, const GrossStart& start, const Robot& robot) {
@@ -329,6 +341,7 @@ std::vector<double> at_start(std::vector<double> g, const GrossStart& start, con
   for (std::size_t k = 0; k < constants.size(); ++k) {
     if (constants[k].channel == Channel::turn) g[k] = start.turn;
     if (constants[k].channel == Channel::difference) g[k] = start.difference;
+    if (constants[k].channel == Channel::steer) g[k] += start.steer;
   }
   return g;
 }
@@ -363,6 +376,18 @@ std::optional<Led> leading(const std::vector<std::vector<double>>& starts,
 /// From the stated constants, but where they are wrong by a factor.
 WheelCalibration calibrated(const std::vector<DrivenRecording>& recordings, const Model& model,
                             const WheelCalibrationOptions& options) {
+  const std::vector<std::vector<double>> starts = likely_starts(recordings, model, options);
+  std::optional<Led> led;
+  if (starts.size() > 1) led = leading(starts, recordings, model, options);
+  if (led && !options.noise) return std::move(led->found);
+  return calibrated_from(led ? led->start : in_force(model), recordings, model, options);
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> likely_starts(const std::vector<DrivenRecording>& recordings,
+                                               const Model& model,
+                                               const WheelCalibrationOptions& options) {
   const std::vector<double> stated = in_force(model);
   std::vector<std::vector<double>> starts;
   Robot robot = model.robot;
@@ -370,49 +395,15 @@ WheelCalibration calibrated(const std::vector<DrivenRecording>& recordings, cons
   for (const GrossStart& one : gross_starts(recordings, robot, options.problem)) {
     starts.push_back(at_start(stated, one, model.robot));
   }
-  std::optional<Led> led;
-  if (!starts.empty()) {
-    starts.push_back(stated);
-    led = leading(starts, recordings, model, options);
-  }
-  if (led && !options.noise) return std::move(led->found);
-  return calibrated_from(led ? led->start : stated, recordings, model, options);
+  starts.push_back(stated);
+  return starts;
 }
-
-}  // namespace
 
 WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
                                   const Model& given, const WheelCalibrationOptions& options) {
   const Model model = with_places_in_robot(given);
-  const std::vector<double> g = in_force(model);
-  const std::optional<std::size_t> gain = place_of_gain(model.robot);
-  if (!gain) return calibrated(recordings, model, options);
-  // A steering whose encoder is geared may turn many times as far as is believed: least squares
-  // find that only from near by.
-  std::optional<WheelCalibration> best;
-  std::optional<WheelCalibration> stated;  // from the stated gain: not settled, or far from it
-  std::exception_ptr why;
-  for (const double factor : {1.0, 2.0, 0.5, 4.0, 0.25, 8.0, 0.125}) {
-    std::vector<double> start = g;
-    start[*gain] = factor * (1.0 + g[*gain]) - 1.0;
-    try {
-      WheelCalibration found = calibrated_from(start, recordings, model, options);
-      const bool nearby = led_nearby(found, start[*gain]);
-      if (factor == 1.0 && nearby) return found;
-      if (nearby && (!best || found.chi2 * best->dof < best->chi2 * found.dof)) {
-        best = std::move(found);
-      } else if (factor == 1.0) {
-        stated = std::move(found);
-      }
-    } catch (const SolveError&) {
-      if (!why) why = std::current_exception();
-    } catch (const std::invalid_argument&) {  // steered to where the wheel has no way ahead
-      if (!why) why = std::current_exception();
-    }
-  }
-  if (best) return std::move(*best);
-  if (stated) return std::move(*stated);
-  std::rethrow_exception(why);  // the stated start's, which led to nothing
+  if (place_of_gain(model.robot)) return calibrate_steered(recordings, model, options);
+  return calibrated(recordings, model, options);
 }
 
 }  // namespace trussmap

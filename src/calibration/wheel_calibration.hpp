@@ -16,6 +16,7 @@ struct WheelCalibrationOptions {
   bool noise = true;  ///< estimate k_L and k_R too
   /// Of each recording, where several are segments of one drive; empty: each is its own.
   std::vector<int> sessions;
+  std::vector<Channel> seldom = {};  ///< of seldom_constants those that are sought
 };
 
 [[nodiscard]] WheelCalibrationOptions calibration_options(const CalibrationOptions& options);
@@ -23,5 +24,21 @@ struct WheelCalibrationOptions {
 [[nodiscard]] WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
                                                 const Model& model,
                                                 const WheelCalibrationOptions& options);
+
+/// From these values of the constants (sought_constants.hpp) on, by least squares.
+[[nodiscard]] WheelCalibration calibrated_from(std::vector<double> g,
+                                               const std::vector<DrivenRecording>& recordings,
+                                               const Model& model,
+                                               const WheelCalibrationOptions& options);
+
+/// The stated constants, and those of starts by places that are far better, the best first.
+[[nodiscard]] std::vector<std::vector<double>> likely_starts(
+    const std::vector<DrivenRecording>& recordings, const Model& model,
+    const WheelCalibrationOptions& options);
+
+/// Of a robot that steers. Throws as calibrate_wheels does.
+[[nodiscard]] WheelCalibration calibrate_steered(const std::vector<DrivenRecording>& recordings,
+                                                 const Model& model,
+                                                 const WheelCalibrationOptions& options);
 
 }  // namespace trussmap

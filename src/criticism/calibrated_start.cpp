@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/calibrated_start.hpp"
 
+#include "calibration/sought_constants.hpp"
 #include "calibration/wheel_calibration.hpp"
 #include "criticism/refits.hpp"
+#include "effects/steering.hpp"
 #include "fit/fit_state.hpp"
 
 #include <algorithm>
@@ -15,8 +17,11 @@
 namespace trussmap {
 namespace {
 
-constexpr double kFarPlace = 0.3;  // m off: no handbreadth
-constexpr double kFarYaw = 0.2;    // rad
+constexpr double kFarPlace = 0.3;   // m off: no handbreadth
+constexpr double kFarYaw = 0.2;     // rad
+constexpr double kFarWheel = 0.1;   // m
+constexpr double kFarAngle = 0.05;  // rad, of steering
+constexpr double kHalf = 0.5;       // of the difference between two axles
 
 /// g of travel, of turning and of the wheels' difference, as effects that add to each other have
 /// them; a calibration's act one after the other.
@@ -75,6 +80,52 @@ std::map<Channel, double> places_off(const WheelCalibration& found, const Robot&
   return result;
 }
 
+/// Whether the sensors of this channel were surely found further left or right than stated.
+bool is_moved_aside(const WheelCalibration& found, const Robot& stated, Channel channel) {
+  constexpr double kSure = 4.0;  // standard errors
+  const std::map<Channel, double> off = places_off(found, stated);
+  const auto at = off.find(channel);
+  if (at == off.end()) return false;
+  return std::ranges::any_of(found.mountings, [&](const CalibratedMounting& one) {
+    const Channel its = one.of == "antenna"   ? Channel::antenna_left
+                        : one.of == "scanner" ? Channel::scanner_left
+                                              : Channel::lever_left;
+    return its == channel && one.y && std::abs(at->second) > kSure * one.y->sd;
+  });
+}
+
+/// Without those that few robots have and this one has not. Beside a wheel to the left, without
+/// sensors to the left but those that were found there: which of them is in the middle no motion
+/// tells.
+void keep_likely(const std::optional<WheelCalibration>& found, const Robot& stated,
+                 std::vector<Effect>& constants) {
+  const auto has = [&found](Channel one) {
+    return found && std::ranges::count(found->channels, one) > 0;
+  };
+  std::vector<Channel> unlikely = seldom_constants(stated);
+  std::erase_if(unlikely, has);
+  if (has(Channel::wheel_left) || has(Channel::steer_left)) {
+    for (const Channel one : {Channel::lever_left, Channel::antenna_left, Channel::scanner_left}) {
+      if (!is_moved_aside(*found, stated, one)) unlikely.push_back(one);
+    }
+  }
+  std::erase_if(constants, [&unlikely](const Effect& one) {
+    return std::ranges::count(unlikely, one.channel) > 0;
+  });
+}
+
+/// Of steering, and of the wheels' places: as they are.
+std::map<Channel, double> steering_of(const Model& calibrated) {
+  std::map<Channel, double> result;
+  for (const Effect& one : calibrated.effects) {
+    const bool ours = is_steering(one.channel) || one.channel == Channel::other_axle;
+    if (ours && one.is_constant() && !one.coefficients.empty()) {
+      result[one.channel] += one.coefficients.front();
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 bool is_far_place(Channel channel, double g) {
@@ -82,7 +133,11 @@ bool is_far_place(Channel channel, double g) {
   const bool turned = channel == scanner_yaw || channel == bearing || channel == truth_heading;
   const bool place = channel == lever || channel == lever_left || channel == antenna ||
                      channel == antenna_left || channel == scanner || channel == scanner_left;
-  return (place && std::abs(g) >= kFarPlace) || (turned && std::abs(g) >= kFarYaw);
+  const bool wheel = channel == wheel_left || channel == steer_left;
+  return (place && std::abs(g) >= kFarPlace) || (turned && std::abs(g) >= kFarYaw) ||
+         (wheel && std::abs(g) >= kFarWheel) || (channel == steer && std::abs(g) >= kFarAngle) ||
+         (channel == steer_gain && std::abs(g) >= kGross) ||
+         (channel == other_axle && std::abs(g) >= kHalf);
 }
 
 CalibratedStart start_of_constants(const std::vector<DrivenRecording>& recordings,
@@ -92,12 +147,14 @@ CalibratedStart start_of_constants(const std::vector<DrivenRecording>& recording
   options.noise = false;
   const auto found = if_possible<WheelCalibration>(
       [&] { return calibrate_wheels(recordings, given.model, options); });
+  keep_likely(found, given.model.robot, constants);
   if (!found) return {std::move(constants)};
   const DriveFactors factors = factors_of(found->model);
   const double most =
       std::max({std::abs(factors.travel), std::abs(factors.turn), std::abs(factors.difference)});
   CalibratedStart result{std::move(constants), true, most >= kGross};
-  const std::map<Channel, double> places = places_off(*found, given.model.robot);
+  std::map<Channel, double> places = places_off(*found, given.model.robot);
+  for (const auto& [channel, g] : steering_of(found->model)) places[channel] = g;
   for (Effect& one : result.constants) {
     one.coefficients.assign(one.shape.size(), 0.0);
     if (one.channel == Channel::travel) one.coefficients = {factors.travel};

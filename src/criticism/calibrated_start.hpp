@@ -13,7 +13,8 @@ namespace trussmap {
 
 inline constexpr double kGross = 0.05;  ///< of a factor
 
-/// Whether g of this channel says that a sensor sits far from where it is stated to.
+/// Whether g of this channel says that a sensor sits, a wheel stands or steering points far from
+/// where it is stated to.
 [[nodiscard]] bool is_far_place(Channel channel, double g);
 
 /// The constants as a calibration of the drive has them, where it leads anywhere, as a start.
@@ -21,10 +22,12 @@ struct CalibratedStart {
   std::vector<Effect> constants;
   bool found = false;
   bool gross = false;       ///< one of the drive's factors is
-  bool far_places = false;  ///< a sensor sits far from where it is stated to
+  bool far_places = false;  ///< a sensor, or the steering, is far from where it is stated
 };
 
 /// `constants`: those that are sought, without coefficients; so they stay where nothing was found.
+/// Those that few robots have (sought_constants.hpp) are left out where the calibration has none:
+/// wheels are told from sensors to the left, and not from the middle.
 [[nodiscard]] CalibratedStart start_of_constants(const std::vector<DrivenRecording>& recordings,
                                                  const ModelFit& given,
                                                  std::vector<Effect> constants);

@@ -220,10 +220,25 @@ Candidates of_family(const CatalogueEntry& entry, const Grounds& grounds) {
   return found;
 }
 
+/// A wheel beside the middle before a sensor there, where no motion tells which it is.
+double prior_of(Channel channel) {
+  constexpr double kBefore = 0.1;
+  return channel == Channel::steer_left || channel == Channel::wheel_left ? kBefore : 0.0;
+}
+
+/// Whether it is of a left and a right wheel that change direction each for itself.
+bool is_of_two_wheels(const CatalogueEntry& entry) {
+  return std::ranges::any_of(entry.pattern,
+                             [](std::string_view one) { return one.starts_with("reverses_"); });
+}
+
 Candidates of_catalogue(const Grounds& grounds) {
   Candidates found;
+  const DriveKind drive = grounds.context.robot().drive;
+  const bool two_wheels = drive == DriveKind::differential || drive == DriveKind::skid_steer;
   for (const CatalogueEntry& entry : catalogue()) {
     if (!grounds.allow(entry.channel)) continue;
+    if (!two_wheels && is_of_two_wheels(entry)) continue;
     Candidate one;
     if (entry.of_covariate()) {
       std::vector<std::string> names(entry.also_of.begin(), entry.also_of.end());
@@ -240,6 +255,7 @@ Candidates of_catalogue(const Grounds& grounds) {
       append(found, of_family(entry, grounds));
     } else {
       one.effect = catalogue_effect(entry);
+      one.log_prior = prior_of(entry.channel);
       found.push_back(one);
     }
   }

@@ -6,6 +6,7 @@
 #include "criticism/effect_strength.hpp"
 #include "criticism/refits.hpp"
 #include "criticism/score_test.hpp"
+#include "effects/steering.hpp"
 #include "fit/fit_state.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 
@@ -31,7 +32,8 @@ std::vector<Effect> causes_for(const ModelFit& given, const ScoreTest& tests, bo
                        channel == Channel::difference || channel == Channel::drift;
     const bool moves = channel == Channel::travel || channel == Channel::advance ||
                        channel == Channel::wheels || channel == Channel::sideways;
-    if (!turns && !moves) continue;
+    const bool steers = is_steering(channel) || channel == Channel::other_axle;
+    if (!turns && !moves && !steers) continue;
     if (gyro && channel == Channel::drift) continue;  // its bias is what drifts
     if (moves && !scale) continue;
     if (!tests.is_present(one.effect)) result.push_back(one.effect);

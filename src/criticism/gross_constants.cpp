@@ -10,6 +10,7 @@
 #include "criticism/look_alikes.hpp"
 #include "criticism/refits.hpp"
 #include "criticism/tested_candidate.hpp"
+#include "drive/steered_motion.hpp"
 #include "effects/channel_physics.hpp"
 #include "fit/fit_state.hpp"
 #include "odometry/wheels_and_gyro.hpp"
@@ -59,7 +60,7 @@ std::vector<Effect> constants_for(const std::vector<DrivenRecording>& recordings
     const Channel channel = one.effect.channel;
     if (record == nullptr || !record->robot_constant) continue;
     if (!scale && is_scale(channel)) continue;
-    if (is_laid_out(channel)) continue;               // these need a fit that is near already
+    if (is_delay(channel)) continue;                  // these need a fit that is near already
     if (gyro && channel == Channel::drift) continue;  // its bias is what drifts
     const bool there = std::any_of(
         fit.model.effects.begin(), fit.model.effects.end(), [&one](const Effect& other) {
@@ -325,10 +326,15 @@ std::vector<LookAlike> look_alikes_at(const std::vector<DrivenRecording>& record
 /// Nothing where there are none, or they do not explain much.
 std::optional<GrossConstants> sure_constants(const std::vector<DrivenRecording>& recordings,
                                              const ModelFit& given, const LegOptions& legs) {
-  const std::vector<Effect> constants = constants_for(recordings, given);
+  std::vector<Effect> constants = constants_for(recordings, given);
   if (constants.empty()) return std::nullopt;
   const std::size_t first = given.model.effects.size();
   std::optional<CalibratedStart> start;
+  if (has_steering(given.model.robot)) {
+    start = start_of_constants(recordings, given, constants);
+    constants = start->constants;
+    for (Effect& one : constants) one.coefficients.clear();
+  }
   std::optional<ModelFit> sure = those_that_matter(recordings, given, constants, start);
   if (given.options.gate && is_far_off(sure)) {
     sure = better_of(std::move(sure), those_without_gate(recordings, given, constants, start));

@@ -17,6 +17,8 @@ struct RowMotion {
   BodyMotion body;                 ///< as the wheels show it, or wheels and gyro together
   double left = 0.0, right = 0.0;  ///< m, travels of two wheels that show this
   double wheelbase = 0.0;          ///< m, between them
+  double length = 0.0;             ///< m, of a robot that steers
+  bool front = false;              ///< its measured wheel is the steered one
   double duration = 0.0;           ///< s
   double gyro_turn = 0.0;          ///< rad
   double gyro_along = 0.0;         ///< as GyroShare::along
@@ -53,6 +55,8 @@ struct RowMotion {
                                           double duration, const Robot& robot) {
   RowMotion row;
   row.wheelbase = robot.wheelbase;
+  row.length = robot.length;
+  row.front = robot.drive == DriveKind::tricycle;
   row.duration = duration;
   row.set(travel, sideways, robot);
   return row;

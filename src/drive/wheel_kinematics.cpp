@@ -299,7 +299,7 @@ void WheelKinematics::prepare(MotionRows& drive, std::size_t rows) const {
   }
 }
 
-bool WheelKinematics::move(MotionRows& drive, std::size_t row, double more) const {
+bool WheelKinematics::move(MotionRows& drive, std::size_t row, const SteeringChange& change) const {
   if (!steers_) {
     Eigen::Vector3d motion = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < drive.wheels.size(); ++k) {
@@ -311,9 +311,11 @@ bool WheelKinematics::move(MotionRows& drive, std::size_t row, double more) cons
     return true;
   }
   const SteeredMotion body =
-      steered_motion(robot_, drive.wheels[0].reading[row], drive.wheels[1].reading[row] + more);
+      steered_motion(robot_, drive.wheels[0].reading[row], drive.wheels[1].reading[row], change);
   if (!body.possible) return false;
   take_body(drive, row, body.motion, robot_);
+  drive.wheels[1].gain.resize(drive.wheels[1].reading.size(), 1.0);
+  drive.wheels[1].gain[row] = 1.0 + change.gain;
   for (std::size_t k = 0; k < 2; ++k) {
     const Eigen::Vector3d& by = body.by_reading[k];
     drive.wheels[k].by_reading[row] = {by[0], by[1], by[2]};

@@ -5,6 +5,7 @@
 // so with a whole recording.
 #pragma once
 
+#include "drive/steered_motion.hpp"
 #include "trussmap/recording.hpp"
 #include "trussmap/robot.hpp"
 
@@ -25,9 +26,10 @@ class WheelKinematics {
   void prepare(MotionRows& drive, std::size_t rows) const;
 
   /// From the row's readings its `left`, `right`, `sideways` and `by_reading`, the wheel steered
-  /// `more` [rad] further to the left than it reads. False, and nothing done, where a steering
-  /// angle leaves the measured wheel no way ahead.
-  [[nodiscard]] bool move(MotionRows& drive, std::size_t row, double more = 0.0) const;
+  /// as a change has it. False, and nothing done, where a steering angle leaves the measured wheel
+  /// no way ahead.
+  [[nodiscard]] bool move(MotionRows& drive, std::size_t row,
+                          const SteeringChange& change = {}) const;
 
  private:
   Robot robot_;

@@ -22,6 +22,9 @@
 //                       d(travel)
 //   steer, steer_gain   f, f angle times the same by the      middle
 //                       steering angle
+//   wheel_left, steer_left   f (path, turn) by the place  middle
+//                       of the measured, the steered wheel
+//   other_axle          f (rear travel - steered wheel's) middle
 //   ... per sighting and truth row
 //   lever, lever_left   f ahead, to the left                  its instant
 //   range, range_scale, bearing   f (sightings only)          its instant

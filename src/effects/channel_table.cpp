@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <deque>
 #include <string>
 #include <utility>
@@ -50,6 +51,39 @@ DrivePattern steering_pattern(const RowMotion& row, const More& more) {
     if (column.steers) return more_of(column, row.row, more(column.reading[row.row]));
   }
   return {};
+}
+
+/// What a wheel g further to the left adds (drive/steered_motion.hpp), by its derivative.
+DrivePattern measured_left_pattern(double g, const RowMotion& row) {
+  if (row.wheels == nullptr) return {};
+  const WheelColumn& travel = row.wheels->front();
+  const auto [ahead, aside, turn] = travel.by_reading[row.row];
+  const double more = g * travel.reading[row.row] * turn;
+  return {.advance = more * ahead, .turn = more * turn};
+}
+
+DrivePattern steered_left_pattern(double g, const RowMotion& row) {
+  if (row.wheels == nullptr) return {};
+  const WheelColumn& travel = row.wheels->front();
+  const auto [ahead, aside, turn] = travel.by_reading[row.row];
+  const double more = g * travel.reading[row.row] * turn;
+  if (row.front) return {.advance = more};
+  return {.advance = -more * (ahead - 1.0), .turn = -more * turn};
+}
+
+/// What a share g of the difference adds between the travel of a rear and of the steered wheel.
+DrivePattern other_axle_pattern(double g, const RowMotion& row) {
+  constexpr double kLeastShare = 0.1;  // of the steered wheel's way in the rear one's
+  if (row.wheels == nullptr) return {};
+  const WheelColumn& travel = row.wheels->front();
+  const auto [ahead, aside, turn] = travel.by_reading[row.row];
+  const double ratio =
+      row.front ? 1.0 / std::max(ahead, kLeastShare) : 1.0 / std::hypot(1.0, row.length * turn);
+  return more_of(travel, row.row, g * (ratio - 1.0) * travel.reading[row.row]);
+}
+
+bool has_rear_wheel(const Robot& robot) {
+  return robot.drive == DriveKind::ackermann;
 }
 
 /// Stamped g late, the robot is believed to be where it was g later.
@@ -315,7 +349,33 @@ std::vector<ChannelRecord> single_records() {
        .view_pattern = [](double g, double, double) { return ViewPattern{.heading = g}; },
        .phrase = {"the scanner looks", "to the left of ahead", "to the right of ahead"},
        .noun = "scanner's yaw",
-       .axis = "scanner turned left by"}};
+       .axis = "scanner turned left by"},
+      {.facts = {wheel_left, "wheel_left", "m", 0.3,
+                 "place of the wheel whose travel is read, to the left"},
+       .of_drive = has_rear_wheel,
+       .wheel_pattern = measured_left_pattern,
+       .drawn_against = "turn_rate",
+       .phrase = {"the travel is that of a wheel", "further to the left than stated",
+                  "further to the right than stated"},
+       .noun = "measured wheel's place",
+       .axis = "measured wheel further left than stated by"},
+      {.facts = {steer_left, "steer_left", "m", 0.3,
+                 "place of the wheel whose steering angle is read, to the left"},
+       .of_drive = has_steering,
+       .wheel_pattern = steered_left_pattern,
+       .drawn_against = "turn_rate",
+       .phrase = {"the steering angle is that of a wheel", "further to the left than stated",
+                  "further to the right than stated"},
+       .noun = "steered wheel's place",
+       .axis = "steered wheel further left than stated by"},
+      {.facts = {other_axle, "other_axle", "", 1.0, "axle whose travel is read"},
+       .of_drive = has_steering,
+       .wheel_pattern = other_axle_pattern,
+       .drawn_against = "turn_rate",
+       .phrase = {"the travel is that of the other axle by", "of the difference",
+                  "of the difference less"},
+       .noun = "other axle's travel",
+       .axis = "travel is the other axle's by"}};
 }
 
 /// Whether the n-th of a drive's own wheels rolls; one that is steered has the channel wheels.

@@ -14,18 +14,19 @@
 namespace trussmap {
 namespace {
 
-/// Per row, what is added to the angle; `names` of the effects.
-std::vector<double> added_angles(const MotionRows& drive, const std::vector<Effect>& effects,
-                                 const RowVariables& variables, int session, std::string& names) {
+/// Per row; `names` of the effects.
+std::vector<SteeringChange> changes_of(const MotionRows& drive, const std::vector<Effect>& effects,
+                                       const RowVariables& variables, int session,
+                                       std::string& names) {
   const std::vector<double>& angle = drive.wheels[1].reading;
-  std::vector<double> more(drive.rows(), 0.0);
+  std::vector<SteeringChange> more(drive.rows());
   for (const Effect& effect : effects) {
     if (!is_steering(effect.channel)) continue;
     names += (names.empty() ? "effect \"" : "\", \"") + effect.name;
     try {
       const std::vector<double> g = gains_of(effect, variables, session, drive.rows());
       for (std::size_t row = 0; row < more.size(); ++row) {
-        more[row] += effect.channel == Channel::steer ? g[row] : g[row] * angle[row];
+        add_steering(effect.channel, g[row], angle[row], more[row]);
       }
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("effect \"" + effect.name + "\": " + error.what());
@@ -34,10 +35,25 @@ std::vector<double> added_angles(const MotionRows& drive, const std::vector<Effe
   return more;
 }
 
+bool has_steered_wheel(const MotionRows& drive) {
+  return drive.wheels.size() == 2 && drive.wheels[1].steers;
+}
+
 }  // namespace
 
 bool is_steering(Channel channel) {
-  return channel == Channel::steer || channel == Channel::steer_gain;
+  return channel == Channel::steer || channel == Channel::steer_gain ||
+         channel == Channel::wheel_left || channel == Channel::steer_left;
+}
+
+void add_steering(Channel channel, double g, double angle, SteeringChange& change) {
+  if (channel == Channel::steer) change.angle += g;
+  if (channel == Channel::steer_gain) {
+    change.angle += g * angle;
+    change.gain += g;
+  }
+  if (channel == Channel::wheel_left) change.wheel_left += g;
+  if (channel == Channel::steer_left) change.steer_left += g;
 }
 
 bool steers(const std::vector<Effect>& effects) {
@@ -45,28 +61,45 @@ bool steers(const std::vector<Effect>& effects) {
                      [](const Effect& one) { return is_steering(one.channel); });
 }
 
+bool leave_a_way(const std::vector<Effect>& effects, const MotionRows& drive, const Robot& robot,
+                 const RowVariables& variables, int session) {
+  if (!steers(effects) || !has_steered_wheel(drive)) return true;
+  std::string names;
+  const std::vector<SteeringChange> more = changes_of(drive, effects, variables, session, names);
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    const double travel = drive.wheels[0].reading[row];
+    if (!steered_motion(robot, travel, drive.wheels[1].reading[row], more[row]).possible) {
+      return false;
+    }
+  }
+  return true;
+}
+
 MotionRows steered(MotionRows drive, const Robot& robot, const std::vector<Effect>& effects,
                    const RowVariables& variables, int session) {
-  if (!steers(effects) || drive.wheels.size() != 2 || !drive.wheels[1].steers) return drive;
+  if (!steers(effects) || !has_steered_wheel(drive)) return drive;
   if (!drive.gyro.empty() || !drive.steered.empty()) {
     throw std::logic_error("steering is taken in once, and before the gyro");
   }
   std::string names;
-  const std::vector<double> more = added_angles(drive, effects, variables, session, names);
+  const std::vector<SteeringChange> more = changes_of(drive, effects, variables, session, names);
   drive.steered.reserve(drive.rows());
+  drive.wheels[1].gain.resize(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const double travel = drive.wheels[0].reading[row];
     const double angle = drive.wheels[1].reading[row];
-    const SteeredMotion after = steered_motion(robot, travel, angle + more[row]);
+    const SteeredMotion after = steered_motion(robot, travel, angle, more[row]);
     if (!after.possible) {
       throw std::invalid_argument(joined(
           names, "\": leaves the measured wheel no way ahead at t = ", short_text(drive.t[row]),
-          " s, with a steering angle of ", short_text(angle + more[row]), " rad"));
+          " s, with a steering angle of ", short_text(angle + more[row].angle),
+          " rad, expected coefficients that leave it one"));
     }
     // What replicas and noise made of the row stays.
     const Eigen::Vector3d added = after.motion - steered_motion(robot, travel, angle).motion;
     add_travel(drive, row, wheel_travel({added[0], 0.0, added[2]}, robot));
     drive.steered.push_back({added[0], added[2]});
+    drive.wheels[1].gain[row] = 1.0 + more[row].gain;
     for (std::size_t k = 0; k < 2; ++k) {
       const Eigen::Vector3d& by = after.by_reading[k];
       drive.wheels[k].by_reading[row] = {by[0], by[1], by[2]};

@@ -34,7 +34,7 @@ std::vector<WheelPlace> wheel_places(const Robot& robot) {
     case DriveKind::skid_steer:
       return in_two_rows(robot, robot.columns.size());
     case DriveKind::tricycle:
-      return {{robot.length, 0.0, 0.0, 0.0}};
+      return {{robot.length, robot.steer_left, 0.0, 0.0}};
     case DriveKind::ackermann:
       return {{0.0, robot.wheel_left, 0.0, 0.0}};
     case DriveKind::omni3:

@@ -138,6 +138,15 @@ auto in_words_of(const Effect& effect, const Action& action) {
   }
 }
 
+/// Along the session's path, where there is one.
+RowVariables variables_along(const MotionRows& drive, const Robot& robot,
+                             const std::vector<SessionPath>& paths, std::size_t session) {
+  const bool led = session < paths.size() && paths[session].ends.size() == drive.rows();
+  const int number = static_cast<int>(session);
+  return led ? row_variables(drive, robot, paths[session].start, paths[session].ends, number)
+             : row_variables(drive, robot, Pose(), std::vector<Pose>(drive.rows()), number);
+}
+
 Column make_column(Channel channel, const Shape& shape, int session, const ShapeContext& context) {
   const std::vector<DrivenRecording>& recordings = context.recordings();
   Column column;
@@ -305,14 +314,21 @@ std::vector<DrivenRecording> steered(const std::vector<DrivenRecording>& recordi
   if (!steers(effects)) return result;
   for (std::size_t s = 0; s < result.size(); ++s) {
     MotionRows& drive = result[s].drive;
-    const bool led = s < paths.size() && paths[s].ends.size() == drive.rows();
-    const int session = static_cast<int>(s);
-    const RowVariables variables =
-        led ? row_variables(drive, robot, paths[s].start, paths[s].ends, session)
-            : row_variables(drive, robot, Pose(), std::vector<Pose>(drive.rows()), session);
-    drive = steered(std::move(drive), robot, effects, variables, session);
+    const RowVariables variables = variables_along(drive, robot, paths, s);
+    drive = steered(std::move(drive), robot, effects, variables, static_cast<int>(s));
   }
   return result;
+}
+
+bool leave_a_way(const std::vector<Effect>& effects, const std::vector<DrivenRecording>& recordings,
+                 const Robot& robot, const std::vector<SessionPath>& paths) {
+  if (!steers(effects)) return true;
+  for (std::size_t s = 0; s < recordings.size(); ++s) {
+    const MotionRows& drive = recordings[s].drive;
+    const RowVariables variables = variables_along(drive, robot, paths, s);
+    if (!leave_a_way(effects, drive, robot, variables, static_cast<int>(s))) return false;
+  }
+  return true;
 }
 
 Channel delay_of_legs(const DrivenRecording& recording) {

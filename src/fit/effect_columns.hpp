@@ -122,6 +122,11 @@ class ShapeContext {
                                                    const Robot& robot,
                                                    const std::vector<SessionPath>& paths);
 
+/// Whether the steering effects leave the measured wheel a way ahead in every row, along the same.
+[[nodiscard]] bool leave_a_way(const std::vector<Effect>& effects,
+                               const std::vector<DrivenRecording>& recordings, const Robot& robot,
+                               const std::vector<SessionPath>& paths);
+
 /// The channel that delays what a recording's legs end at: its fixes', where it has nothing else.
 [[nodiscard]] Channel delay_of_legs(const DrivenRecording& recording);
 

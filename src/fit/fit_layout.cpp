@@ -28,6 +28,14 @@ bool steering_sees_path(const std::vector<Effect>& effects) {
   });
 }
 
+/// As it was read, which leaves every row a way.
+std::vector<Effect> without_steering(std::vector<Effect> effects) {
+  for (Effect& effect : effects) {
+    if (is_steering(effect.channel)) std::ranges::fill(effect.coefficients, 0.0);
+  }
+  return effects;
+}
+
 /// What was recorded, driven as the steering effects say.
 std::vector<DrivenRecording> as_steered(const FitTask& task, const FitState& fit) {
   const Model& model = fit.model;
@@ -78,8 +86,27 @@ Vector2 place_seen_from(const RecordingProblem& problem, int landmark,
 
 }  // namespace
 
+void shorten_steering(const FitTask& task, const std::vector<Effect>& from, FitState& fit) {
+  constexpr int kHalvings = 20;
+  std::vector<Effect>& effects = fit.model.effects;
+  const std::vector<Effect> wanted = effects;
+  double share = 1.0;
+  for (int halving = 0; halving <= kHalvings; ++halving) {
+    if (leave_a_way(effects, task.raw, fit.model.robot, fit.paths)) return;
+    share = halving < kHalvings ? 0.5 * share : 0.0;
+    for (std::size_t e = 0; e < effects.size(); ++e) {
+      if (!is_steering(effects[e].channel)) continue;
+      for (std::size_t k = 0; k < effects[e].coefficients.size(); ++k) {
+        const double before = from[e].coefficients[k];
+        effects[e].coefficients[k] = before + share * (wanted[e].coefficients[k] - before);
+      }
+    }
+  }
+}
+
 void lay_out_recordings(const FitTask& task, Fitting& now) {
   FitState& fit = now.fit;
+  if (task.options.fit_effects) shorten_steering(task, without_steering(fit.model.effects), fit);
   now.laid_out = fit.model.effects;
   fit.recordings = retimed(as_steered(task, fit), fit.model.effects, fit.model.robot);
   fit.used = moved_options(task, fit.model);

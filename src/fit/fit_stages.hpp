@@ -60,6 +60,10 @@ void lay_out_again(const FitTask& task, Fitting& now);
 [[nodiscard]] RecordingState placed(const FitState& fit,
                                     const std::map<std::string, Vector2>& landmarks);
 
+/// A step of steering coefficients, from those of `from` on, shortened until it leaves the measured
+/// wheel a way ahead in every row.
+void shorten_steering(const FitTask& task, const std::vector<Effect>& from, FitState& fit);
+
 void start_fit(const FitTask& task, Fitting& now);
 /// From other starts where the first is lost. Throws SolveError where none leads anywhere.
 [[nodiscard]] FitChange adjust_from_starts(const FitTask& task, Fitting& now);

@@ -109,6 +109,7 @@ std::optional<FitChange> adjusted_from(const FitTask& task, StartKind kind, Fitt
       values = task.model.effects[e].coefficients;
     }
   }
+  if (known && task.options.fit_effects) shorten_steering(task, now.laid_out, now.fit);
   lay_start(task, kind, now);
   take_columns(task, now);
   try {

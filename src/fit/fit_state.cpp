@@ -215,6 +215,7 @@ FitChange adjust_once(const FitTask& task, const RecordingAdjustment* near, Fitt
     changed = std::max(changed, std::abs(next - value) / negligible);
     value = next;
   }
+  shorten_steering(task, now.laid_out, fit);
   FitChange change = follow(task, now);
   change.coefficients = changed;
   return change;

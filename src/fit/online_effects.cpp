@@ -36,13 +36,12 @@ bool OnlineEffects::see_the_pose() const {
   return steering_.see_the_pose() || drives_.see_the_pose() || readings_.see_the_pose();
 }
 
-double OnlineEffects::steering(const OnlineFacts& facts, const Pose& middle,
-                               const std::vector<double>& readings) {
+SteeringChange OnlineEffects::steering(const OnlineFacts& facts, const Pose& middle,
+                                       const std::vector<double>& readings) {
   steering_.fill(facts.row, middle, facts.covariates);
-  double more = 0.0;
+  SteeringChange more;
   for (const OnlineTerm& term : steering_.all()) {
-    const double g = term.coefficient * steering_.value(term);
-    more += term.channel == Channel::steer ? g : g * readings.back();
+    add_steering(term.channel, term.coefficient * steering_.value(term), readings.back(), more);
   }
   return more;
 }

@@ -4,6 +4,7 @@
 // A model's effects, for one row at a time, by what they act on.
 #pragma once
 
+#include "drive/steered_motion.hpp"
 #include "effects/channel_physics.hpp"
 #include "fit/online_terms.hpp"
 #include "trussmap/model.hpp"
@@ -30,10 +31,10 @@ class OnlineEffects {
   /// Whether a shape that acts on rows or compass readings speaks of heading, x or y.
   [[nodiscard]] bool see_the_pose() const;
 
-  /// By how much a wheel that reads this angle is steered further to the left, rad; `middle`: where
-  /// the robot is in the middle of the row.
-  double steering(const OnlineFacts& facts, const Pose& middle,
-                  const std::vector<double>& readings);
+  /// What is added to steering that reads so; `middle`: where the robot is in the middle of the
+  /// row.
+  SteeringChange steering(const OnlineFacts& facts, const Pose& middle,
+                          const std::vector<double>& readings);
   /// What is added to a row that the wheels show so.
   DrivePattern drive(const OnlineFacts& facts, const Pose& middle, const RowMotion& shown);
   /// A compass reading at the row's end less what is added to it, rad.

@@ -92,7 +92,7 @@ CorrectedRow OnlineOdometry::drive(const WheelRow& row, std::span<const double> 
     if (!effects_.steer()) {
       clear = cleared(recorded, gyro, facts, after);
     } else {
-      const double more = effects_.steering(facts, middle_of(after), row.readings);
+      const SteeringChange more = effects_.steering(facts, middle_of(after), row.readings);
       const GyroShare steered = at_hand_.steer(row, more);
       clear = cleared(at_hand_.recorded(row, steered), steered, facts, after);
     }

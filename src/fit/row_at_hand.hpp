@@ -88,13 +88,13 @@ class RowAtHand {
     return share_of(row);
   }
 
-  /// The same, steered by so many rad more.
-  GyroShare steer(const WheelRow& row, double more) {
+  /// The same, steered as effects have it.
+  GyroShare steer(const WheelRow& row, const SteeringChange& more) {
     if (kinematics_ && !kinematics_->move(drive_, 0, more)) {
       refuse_row(
-          "a steering angle of " + short_text(row.readings.back() + more) +
+          "a steering angle of " + short_text(row.readings.back() + more.angle) +
           " rad, which the model's steering effects lead to, leaves the measured wheel no way "
-          "ahead");
+          "ahead, expected a smaller one");
     }
     return share_of(row);
   }

@@ -30,9 +30,10 @@ const DriveKeys& keys_of(DriveKind drive) {
       {DriveKind::differential, {{"wheelbase", "columns"}, {}, 2, {}}},
       {DriveKind::unicycle, {{"wheelbase", "columns"}, {}, 2, {"travel", "turn"}}},
       {DriveKind::skid_steer, {{"wheelbase", "columns"}, {"wheelbase"}, 2, {"left", "right"}}},
-      {DriveKind::tricycle, {{"length", "columns"}, {"length"}, 2, {"wheel", "steer"}}},
+      {DriveKind::tricycle,
+       {{"length", "steer_left", "columns"}, {"length"}, 2, {"wheel", "steer"}}},
       {DriveKind::ackermann,
-       {{"length", "wheel_left", "columns"}, {"length"}, 2, {"wheel", "steer"}}},
+       {{"length", "wheel_left", "steer_left", "columns"}, {"length"}, 2, {"wheel", "steer"}}},
       {DriveKind::omni3, {{"radius", "columns"}, {"radius"}, 3, {"wheel1", "wheel2", "wheel3"}}},
       {DriveKind::mecanum,
        {{"wheelbase", "length", "columns"},
@@ -235,6 +236,8 @@ Robot read_robot(const toml::table& robot) {
       result.length = toml_length(node, std::string(name));
     } else if (name == "wheel_left") {
       result.wheel_left = toml_figure(node, "wheel_left");
+    } else if (name == "steer_left") {
+      result.steer_left = toml_figure(node, "steer_left");
     } else if (name == "columns") {
       read_columns(node, result);
     } else if (name == "wheel") {
@@ -263,6 +266,9 @@ std::string robot_text(const Robot& robot) {
   if (has("radius")) text += "radius = " + toml_number(robot.length) + "  # m\n";
   if (has("wheel_left") && robot.wheel_left != 0.0) {
     text += "wheel_left = " + toml_number(robot.wheel_left) + "  # m\n";
+  }
+  if (has("steer_left") && robot.steer_left != 0.0) {
+    text += "steer_left = " + toml_number(robot.steer_left) + "  # m\n";
   }
   if (!robot.columns.empty() && robot.places.empty()) {
     std::vector<std::string> names;

@@ -31,8 +31,9 @@ ArcNoise columns_noise(const MotionRows& drive, std::size_t row, double part, do
   for (const WheelColumn& column : drive.wheels) {
     const Eigen::Vector3d by(column.by_reading[row].data());
     const double way = std::abs(drive.wheels.front().reading[row]);  // what is steered
+    const double steer = noise.steer * (column.gain.empty() ? 1.0 : column.gain[row]);
     const double variance = !column.steers ? k2 * std::abs(column.reading[row])
-                            : way > 0.0    ? noise.steer * noise.steer / way
+                            : way > 0.0    ? steer * steer / way
                                            : 0.0;
     Q += part * variance * by * by.transpose();
   }

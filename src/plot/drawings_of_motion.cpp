@@ -226,6 +226,35 @@ void steering_gain(Sketch& s) {
   s.text({86, 52}, "the larger the angle,").text({86, 68}, "the further off", Ink::cause);
 }
 
+/// A car in a bend to the left: axles, and wheels in the ink of what they are.
+void car(Sketch& s, Ink front_left, Ink front_middle, Ink rear_left, Ink rear_middle) {
+  s.line({50, 52}, {50, 132}, Ink::plain).line({150, 52}, {150, 132}, Ink::plain);
+  s.line({50, 92}, {150, 92}, Ink::plain);
+  s.block({150, 52}, 26, 9, front_left, 38).block({150, 132}, 26, 9, Ink::plain, 20);
+  s.block({50, 52}, 26, 9, rear_left).block({50, 132}, 26, 9, Ink::plain);
+  if (front_middle != Ink::plain) s.block({150, 92}, 26, 9, front_middle, 28);
+  if (rear_middle != Ink::plain) s.block({50, 92}, 26, 9, rear_middle);
+}
+
+void angle_beside(Sketch& s) {
+  car(s, Ink::cause, Ink::believed, Ink::plain, Ink::plain);
+  s.text({176, 40}, "read here", Ink::cause, "start");
+  s.text({176, 96}, "believed here", Ink::believed, "start");
+}
+
+void travel_beside(Sketch& s) {
+  car(s, Ink::plain, Ink::plain, Ink::cause, Ink::believed);
+  s.text({50, 36}, "counted here", Ink::cause)
+      .text({176, 96}, "the inner wheel", Ink::plain, "start");
+  s.text({176, 112}, "goes less far", Ink::plain, "start");
+}
+
+void other_axle(Sketch& s) {
+  car(s, Ink::plain, Ink::cause, Ink::plain, Ink::believed);
+  s.text({176, 96}, "counted here", Ink::cause, "start");
+  s.text({80, 158}, "believed here", Ink::believed);
+}
+
 constexpr EffectDrawing kMotionDrawings[] = {
     {"wheelbase", wheelbase},
     {"constant creep", constant_creep},
@@ -247,7 +276,10 @@ constexpr EffectDrawing kMotionDrawings[] = {
     {"roller slip", roller_slip},
     {"steering offset", steering_offset},
     {"steering offset by direction", steering_by_direction},
-    {"steering gain", steering_gain}};
+    {"steering gain", steering_gain},
+    {"angle read beside the middle", angle_beside},
+    {"travel read beside the middle", travel_beside},
+    {"travel read at the other axle", other_axle}};
 
 }  // namespace
 

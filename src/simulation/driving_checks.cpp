@@ -71,9 +71,9 @@ void check_wheels(const Robot& robot) {
           columns == 2 || columns == 4 || columns == 6,
           fmt::format("a robot of drive skid-steer has {} columns, expected 2, 4 or 6", columns));
     case DriveKind::tricycle:
-      return wants(true, 2);
     case DriveKind::ackermann:
-      require(std::isfinite(robot.wheel_left), "the measured wheel's place must be a number of m");
+      require(std::isfinite(robot.wheel_left) && std::isfinite(robot.steer_left),
+              "the wheels' places must be numbers of m");
       return wants(true, 2);
     case DriveKind::omni3:
       return wants(true, 3);

@@ -35,7 +35,8 @@ DrivingManner manner_of(const Robot& robot) {
   if (robot.drive == DriveKind::ackermann) {
     // A measured wheel goes ahead even where it is the inner one.
     manner.turning_radius =
-        std::max(robot.length / std::tan(kMostSteering), 1.5 * std::abs(robot.wheel_left));
+        std::max({robot.length / std::tan(kMostSteering), 1.5 * std::abs(robot.wheel_left),
+                  1.5 * std::abs(robot.steer_left)});
     manner.longest_arc = kLongestArc;
   }
   if (is_of_drive(Channel::sideways, robot)) manner.aside = kAside;

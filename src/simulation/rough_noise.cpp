@@ -106,7 +106,8 @@ double SensorErrors::wheel(std::size_t column, double travel, double duration) {
 
 double SensorErrors::steering(double travel) {
   const double z = normal_(random_steering_);
-  return travel == 0.0 ? 0.0 : noise_.steer / std::sqrt(std::abs(travel)) * z;
+  constexpr double kMostSd = 0.2;  // rad: a row that hardly moves the robot turns no wheel round
+  return travel == 0.0 ? 0.0 : std::min(kMostSd, noise_.steer / std::sqrt(std::abs(travel))) * z;
 }
 
 double SensorErrors::compass(double duration) {

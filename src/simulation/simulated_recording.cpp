@@ -19,6 +19,7 @@ constexpr double kDelayOverrun = 0.4;  // m: a robot that stands shows no delay
 Robot geometry_of(const SimulationSettings& settings) {
   Robot robot = usual_robot(drive_named(settings.drive), settings.wheelbase, settings.length);
   robot.wheel_left = settings.wheel_left;
+  robot.steer_left = settings.steer_left;
   robot.mounted = settings.mounted;
   return robot;
 }

@@ -114,8 +114,13 @@ class SteeredWheel {
     const Eigen::Vector2d wanted(asked[0], L * asked[2]);
     if (wanted.norm() < 1e-12) return {0.0, angle};
     const auto shown = [&](double at) -> Eigen::Vector2d {
-      const Eigen::Vector2d per = shares(at + g(Channel::steer) + g(Channel::steer_gain) * at);
-      const double common = 1.0 + g(Channel::wheels);
+      const double points = at + g(Channel::steer) + g(Channel::steer_gain) * at;
+      const Eigen::Vector2d per =
+          shares(points, g(Channel::wheel_left) / L, g(Channel::steer_left) / L);
+      // A reading of the rear axle is its own way; one of the front a length ahead goes aside, too.
+      const double other = robot_.drive == DriveKind::tricycle ? 1.0 / std::max(per[0], kLeastWay)
+                                                               : 1.0 / std::hypot(1.0, per[1]);
+      const double common = 1.0 + g(Channel::wheels) + g(Channel::other_axle) * (other - 1.0);
       return {(common + g(Channel::travel)) * per[0], (common + g(Channel::turn)) * per[1]};
     };
     if (robot_.drive == DriveKind::tricycle) {
@@ -140,17 +145,22 @@ class SteeredWheel {
   }
 
  private:
-  /// Of a metre of travel: the way ahead, and length x turn [m].
-  [[nodiscard]] Eigen::Vector2d shares(double angle) const {
+  /// Of a metre of travel: the way ahead, and length x turn [m]. The wheels stand so many lengths
+  /// further left than stated.
+  [[nodiscard]] Eigen::Vector2d shares(double angle, double measured = 0.0,
+                                       double steered = 0.0) const {
     const double c = std::cos(angle);
     const double s = std::sin(angle);
-    // The steered wheel is the front one, and goes where it points.
-    if (robot_.drive == DriveKind::tricycle) return {c, s};
-    // All turn about a point on the rear axle, so far to the left that the front points across it;
-    // the measured wheel is nearer to it than the middle.
-    const double y = robot_.wheel_left / robot_.length;
-    const double ahead = c / (c - y * s);
-    return {ahead, ahead * s / c};
+    const double z = robot_.steer_left / robot_.length + steered;
+    // The steered wheel is the front one, and goes where it points; the middle of the axle goes
+    // ahead, and past the wheel's side the more the wheel turns about it.
+    if (robot_.drive == DriveKind::tricycle) return {c + z * s, s};
+    // All turn about a point on the rear axle, so far to the left that the wheel points across it,
+    // from where that stands; the measured wheel is nearer to it than the middle.
+    const double y = robot_.wheel_left / robot_.length + measured;
+    if (s == 0.0) return {1.0, 0.0};
+    const double centre = c / s + z;  // lengths to the left
+    return {centre / (centre - y), 1.0 / (centre - y)};
   }
 
   /// Newton's method for the angle at which what is shown is along what is wanted.
@@ -168,6 +178,8 @@ class SteeredWheel {
     }
     return angle;
   }
+
+  static constexpr double kLeastWay = 0.1;  // of the rear axle, per metre of the steered wheel
 
   const Robot& robot_;
 };

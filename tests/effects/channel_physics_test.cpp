@@ -275,7 +275,7 @@ TEST(Channels, OfSingleWheelsAreCalledByTheirNumber) {
 }
 
 TEST(Channels, HaveOneNameEach) {
-  EXPECT_EQ(channels().size(), 38U);
+  EXPECT_EQ(channels().size(), 41U);
   for (const ChannelFacts& one : channels()) {
     EXPECT_EQ(parse_channel(one.name), one.channel);
     EXPECT_EQ(channel_named(one.name), one.channel);
