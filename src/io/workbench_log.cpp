@@ -4,6 +4,7 @@
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
+#include "trussmap/workbench.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <array>
