@@ -26,8 +26,9 @@ namespace {
 
 constexpr double kPossible = 10.0;  // chi^2/dof
 
-/// Whether a start from this gain may be believed: it led somewhere, and not far away.
-bool led_nearby(const WheelCalibration& found, double start) {
+/// Whether a start from this gain may be believed: it led somewhere, and not far away. One that is
+/// not as stated has to be determined.
+bool led_nearby(const WheelCalibration& found, double start, bool stated) {
   constexpr double kFar = 1.7;  // starts within it of the gain that is found lead there
   if (!found.settled) return false;
   for (const DriveConstant& one : found.constants) {
@@ -35,7 +36,7 @@ bool led_nearby(const WheelCalibration& found, double start) {
     const double ratio = (1.0 + one.g.value) / (1.0 + start);
     return ratio < kFar && ratio > 1.0 / kFar;
   }
-  return true;
+  return stated;
 }
 
 double scatter_of(const WheelCalibration& one) {
@@ -54,7 +55,7 @@ class Starts {
     const std::size_t gain = *place_of_gain(model_.robot);
     try {
       WheelCalibration found = calibrated_from(g, recordings_, model_, options_);
-      const bool nearby = led_nearby(found, g[gain]);
+      const bool nearby = led_nearby(found, g[gain], g[gain] == in_force(model_)[gain]);
       if (nearby && (!best_ || scatter_of(found) < scatter_of(*best_))) {
         best_ = std::move(found);
       } else if (stated && !nearby) {

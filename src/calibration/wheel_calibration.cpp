@@ -2,20 +2,22 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/wheel_calibration.hpp"
 
-#include "calibration/gross_starts.hpp"
 #include "calibration/heading_offset.hpp"
 #include "calibration/measured_distance.hpp"
 #include "calibration/most_likely_noise.hpp"
 #include "calibration/reference_alignment.hpp"
 #include "calibration/sensor_places.hpp"
 #include "calibration/sought_constants.hpp"
+#include "drive/steered_motion.hpp"
 #include "drive/well_formed.hpp"
+#include "effects/steering.hpp"
 #include "estimation/recording_adjustment.hpp"
 #include "fit/effect_columns.hpp"
 #include "odometry/effect_correction.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -58,6 +60,40 @@ struct Fitted {
   RecordingAdjustment adjustment;
 };
 
+/// What turning and travel are scaled by, steering's columns and the noise of its readings are.
+void scale_steering(const std::vector<double>& g, const Wanted& wanted, const Robot& robot,
+                    Fitted& fitted) {
+  const std::vector<SoughtConstant> constants = sought_constants(robot);
+  double ahead = 1.0;
+  double turned = 1.0;
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (constants[k].channel == Channel::wheels) ahead += g[k];
+    if (constants[k].channel == Channel::turn) turned += g[k];
+  }
+  turned *= ahead;
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (!wanted[k]) continue;
+    EffectPattern& column = fitted.parameters[at++];
+    if (!is_steering(constants[k].channel)) continue;
+    for (std::vector<DrivePattern>& rows : column.drives) {
+      for (DrivePattern& row : rows) {
+        row.advance *= ahead;
+        row.turn *= turned;
+        row.excess *= turned;
+      }
+    }
+  }
+  for (DrivenRecording& one : fitted.corrected) {
+    for (WheelColumn& column : one.drive.wheels) {
+      for (std::array<double, 3>& by : column.by_reading) {
+        by[0] *= ahead;
+        by[2] *= turned;
+      }
+    }
+  }
+}
+
 /// `next`, or so much of the way to it as leaves the measured wheel a way ahead in every row.
 std::vector<double> shortened(const std::vector<double>& g, std::vector<double> next,
                               const std::vector<DrivenRecording>& recordings, const Model& model) {
@@ -73,8 +109,9 @@ Fitted fit(const std::vector<DrivenRecording>& recordings, const Model& model, c
            const WheelCalibrationOptions& options, const References& references) {
   Fitted result;
   result.corrected = without_effects(recordings, model);
-  result.problem = make_problem(result.corrected, model, options.problem);
   result.parameters = parameters_of(wanted, result.corrected, model.robot, options, references);
+  if (has_steering(model.robot)) scale_steering(in_force(model), wanted, model.robot, result);
+  result.problem = make_problem(result.corrected, model, options.problem);
   result.adjustment = adjust(result.problem, result.parameters);
   return result;
 }
@@ -300,7 +337,9 @@ WheelCalibration calibrated_from(std::vector<double> g,
   WheelCalibration result;
   result.model = with_constants(model, g);
   Mountings& mounted = result.model.robot.mounted;
-  mounted = started_places(recordings, model.robot);
+  mounted = started_places(
+      has_steering(model.robot) ? without_effects(recordings, result.model) : recordings,
+      model.robot);
   References references{told_in(recordings, result.model, options), {}};
   if (!references.used.scanner) mounted.scanner = model.robot.mounted.scanner;
   if (!references.used.sensor) mounted.sensor = model.robot.mounted.sensor;
@@ -334,17 +373,6 @@ WheelCalibration calibrated_from(std::vector<double> g,
 }
 
 namespace {
-
-/// The stated constants with those of a start in their place.
-std::vector<double> at_start(std::vector<double> g, const GrossStart& start, const Robot& robot) {
-  const std::vector<SoughtConstant> constants = sought_constants(robot);
-  for (std::size_t k = 0; k < constants.size(); ++k) {
-    if (constants[k].channel == Channel::turn) g[k] = start.turn;
-    if (constants[k].channel == Channel::difference) g[k] = start.difference;
-    if (constants[k].channel == Channel::steer) g[k] += start.steer;
-  }
-  return g;
-}
 
 /// A start, and what it leads to under the stated noise.
 struct Led {
@@ -384,20 +412,6 @@ WheelCalibration calibrated(const std::vector<DrivenRecording>& recordings, cons
 }
 
 }  // namespace
-
-std::vector<std::vector<double>> likely_starts(const std::vector<DrivenRecording>& recordings,
-                                               const Model& model,
-                                               const WheelCalibrationOptions& options) {
-  const std::vector<double> stated = in_force(model);
-  std::vector<std::vector<double>> starts;
-  Robot robot = model.robot;
-  robot.mounted = started_places(recordings, robot);
-  for (const GrossStart& one : gross_starts(recordings, robot, options.problem)) {
-    starts.push_back(at_start(stated, one, model.robot));
-  }
-  starts.push_back(stated);
-  return starts;
-}
 
 WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
                                   const Model& given, const WheelCalibrationOptions& options) {

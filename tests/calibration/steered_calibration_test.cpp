@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Steered robots whose constants are wrong by factors, and whose wheels are not those that the
-// model says: what a calibration finds of simulated ones lies within four of its standard errors
-// (three of 36 figures would miss three now and then), and dead reckoning by it is right.
+// model says: what a calibration finds of simulated ones lies within four of its standard errors.
 #include "calibration/wheel_calibration.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/simulated_recording.hpp"
@@ -79,7 +78,7 @@ TEST(SteeredCalibration, FindsAxlesStatedTwiceOrHalfAsFarApart) {
   }
 }
 
-TEST(SteeredCalibration, FindsAMeasuredWheelBesideTheMiddleAndTheAxles) {
+TEST(SlowSteeredCalibration, FindsAMeasuredWheelBesideTheMiddleAndTheAxles) {
   SimulationSettings settings = yard("ackermann", 22);
   settings.wheel_left = 0.2;
   const Unknowing one = unknowing(settings, 1.3);
@@ -93,7 +92,7 @@ TEST(SteeredCalibration, FindsAMeasuredWheelBesideTheMiddleAndTheAxles) {
   EXPECT_NEAR(robot.length, constant_named(constants, "length")->after, 1e-9);
 }
 
-TEST(SteeredCalibration, FindsASteeredWheelBesideTheMiddle) {
+TEST(SlowSteeredCalibration, FindsASteeredWheelBesideTheMiddle) {
   for (const char* drive : {"ackermann", "tricycle"}) {
     SimulationSettings settings = yard(drive, 23);
     settings.steer_left = 0.2;
@@ -106,7 +105,7 @@ TEST(SteeredCalibration, FindsASteeredWheelBesideTheMiddle) {
 
 /// Which of them is in the middle no motion tells where the antenna is sought, too: the one that
 /// leaves the antenna where it is stated, and the other is said.
-TEST(SteeredCalibration, TakesTheWheelThatLeavesTheAntennaInTheMiddle) {
+TEST(SlowSteeredCalibration, TakesTheWheelThatLeavesTheAntennaInTheMiddle) {
   SimulationSettings settings = yard("ackermann", 24);
   settings.fix_rate = 2.0;
   settings.steer_left = 0.2;
@@ -121,7 +120,7 @@ TEST(SteeredCalibration, TakesTheWheelThatLeavesTheAntennaInTheMiddle) {
   EXPECT_NE(found.doubts.front().find("measured wheel"), std::string::npos) << found.doubts.front();
 }
 
-TEST(SteeredCalibration, FindsTravelOfTheSteeredWheel) {
+TEST(SlowSteeredCalibration, FindsTravelOfTheSteeredWheel) {
   SimulationSettings settings = yard("ackermann", 25);
   const Unknowing one =
       unknowing(settings, 1.0, {catalogue_effect("travel read at the other axle", {1.0})});

@@ -465,6 +465,7 @@ TEST(ModelFile, DrivesComeBack) {
       "drive = \"skid-steer\"\nwheelbase = 0.5\ncolumns = [\"a\", \"b\", \"c\", \"d\"]\n",
       "drive = \"tricycle\"\nlength = 1.25\n",
       "drive = \"ackermann\"\nlength = 2.83\nwheel_left = 0.76\ncolumns = [\"v\", \"phi\"]\n",
+      "drive = \"tricycle\"\nlength = 1.3\nsteer_left = -0.2\n",
       "drive = \"omni3\"\nradius = 0.195\n",
       "drive = \"mecanum\"\nwheelbase = 0.4\nlength = 0.5\n",
       "drive = \"wheels\"\ncolumns = [\"f\", \"s\", \"a\"]\n"
@@ -484,6 +485,7 @@ TEST(ModelFile, DrivesComeBack) {
     EXPECT_EQ(in.robot.wheelbase, out.robot.wheelbase);
     EXPECT_EQ(in.robot.length, out.robot.length);
     EXPECT_EQ(in.robot.wheel_left, out.robot.wheel_left);
+    EXPECT_EQ(in.robot.steer_left, out.robot.steer_left);
     EXPECT_TRUE(in.robot.matrix == out.robot.matrix);
     EXPECT_EQ(in.noise.steer, 0.01);
     EXPECT_NEAR(in.noise.left, 0.007, 1e-17);

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "calibration/gross_starts.hpp"
+#include "calibration/sensor_places.hpp"
+#include "calibration/sought_constants.hpp"
+#include "calibration/wheel_calibration.hpp"
+#include "drive/steered_motion.hpp"
+
+#include <vector>
+
+namespace trussmap {
+namespace {
+
+/// The stated constants with those of a start in their place.
+std::vector<double> at_start(std::vector<double> g, const GrossStart& start, const Robot& robot) {
+  const std::vector<SoughtConstant> constants = sought_constants(robot);
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (constants[k].channel == Channel::turn) g[k] = start.turn;
+    if (constants[k].channel == Channel::difference) g[k] = start.difference;
+    if (constants[k].channel == Channel::steer) g[k] += start.steer;
+  }
+  return g;
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> likely_starts(const std::vector<DrivenRecording>& recordings,
+                                               const Model& model,
+                                               const WheelCalibrationOptions& options) {
+  const std::vector<double> stated = in_force(model);
+  std::vector<std::vector<double>> starts;
+  Robot robot = model.robot;
+  const auto add = [&] {
+    for (const GrossStart& one : gross_starts(recordings, robot, options.problem)) {
+      starts.push_back(at_start(stated, one, model.robot));
+    }
+  };
+  // Places by turns that are wrong by a factor may be far off, those that are stated as well.
+  if (has_steering(robot)) add();
+  robot.mounted = started_places(recordings, robot);
+  add();
+  starts.push_back(stated);
+  return starts;
+}
+
+}  // namespace trussmap
