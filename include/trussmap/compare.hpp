@@ -43,7 +43,8 @@ namespace trussmap {
 //   recordings, model --prepare_recordings--> recordings, notes on what is left out and why
 //
 //   frames   where sightings come in dense frames, one frame in so long as their errors last
-//            (lasting_errors, fit_model.hpp)
+//            (lasting_errors, fit_model.hpp); of very many sightings, so few that they are
+//            kEnoughSightings, or one frame in a second
 //   survey   points that contradict a map made of such frames without the survey
 //
 // Both are of the model: an effect that it lacks makes errors last, and they no longer do once it
@@ -53,6 +54,10 @@ namespace trussmap {
 /// The gate of gate.hpp, kModelGate, as long as few measurements are beyond it. `gate` in standard
 /// deviations; 0: none.
 [[nodiscard]] FitOptions gated_fit(double gate = kModelGate);
+
+/// Sightings, of dense frames: of more, every fit takes longer, and the wheels between the frames
+/// tell the rest.
+inline constexpr std::size_t kEnoughSightings = 12000;
 
 /// What of recordings' sightings a model is judged by.
 struct UsedSightings {
@@ -67,13 +72,18 @@ struct PreparedRecordings {
   std::vector<DrivenRecording> recordings;
   std::vector<std::string> notes;  ///< what of the recordings is not used, and why
   UsedSightings sightings;
-  /// Before anything was left out; nullptr where no model is asked what to use.
+  /// What a model may use; nullptr where no model is asked what to use.
   std::shared_ptr<const std::vector<DrivenRecording>> whole = nullptr;
-  FitOptions fit;  ///< by which that is judged
+  std::size_t recorded = 0;  ///< sightings that there are
+  double pace = 0.0;         ///< s, of which `whole` has one frame; 0: it has all
+  FitOptions fit;            ///< by which that is judged
+
+  /// Whether with another model there could be more than are used.
+  [[nodiscard]] bool could_be_more() const;
 };
 
 /// Thinned out. `every`: s between frames of sightings; 0: all;
-/// absent: as long as their errors are found to last. Throws like fit_model.
+/// absent: as long as their errors are found to last, and few enough. Throws like fit_model.
 [[nodiscard]] PreparedRecordings prepare_recordings(std::vector<DrivenRecording> recordings,
                                                     const Model& model, const FitOptions& fit,
                                                     std::optional<double> every = {});

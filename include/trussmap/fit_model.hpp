@@ -225,6 +225,11 @@ struct LastingErrors {
 [[nodiscard]] std::vector<DrivenRecording> thinned_frames(
     const std::vector<DrivenRecording>& recordings, double lasts);
 
+/// Of each `every` s the frame that tells most, a sighting of a landmark counting the more the
+/// fewer there are of it; sightings of a landmark that the robot stands on stay all.
+[[nodiscard]] std::vector<DrivenRecording> richest_frames(
+    const std::vector<DrivenRecording>& recordings, double every);
+
 /// Whether there are enough frames that are near each other, and see the same, for lasting_errors.
 [[nodiscard]] bool has_dense_frames(const std::vector<DrivenRecording>& recordings);
 

@@ -50,7 +50,7 @@ JudgedRun run_by(PreparedRecordings rows, ModelFit fit, const Noise& stated,
 JudgedRun judged_run(PreparedRecordings rows, ModelFit fit, const Noise& stated,
                      const DiagnoseOptions& options) {
   JudgedRun judged = run_by(std::move(rows), std::move(fit), stated, options);
-  for (int change = 0; change < kMostChanges && judged.rows.sightings.thinned(); ++change) {
+  for (int change = 0; change < kMostChanges && judged.rows.could_be_more(); ++change) {
     const Diagnosis& found = judged.run.result;
     if (found.verdict != Diagnosis::Verdict::missing) break;
     std::optional<PreparedRecordings> again =
@@ -89,7 +89,7 @@ Discovery discover(PreparedRecordings& recordings, const Model& model,
   DiscoverOptions how = options;
   how.go_on = [&](const ModelFit& fit) {
     if (options.go_on && !options.go_on(fit)) return false;
-    if (changes == kMostChanges || !recordings.sightings.thinned()) return true;
+    if (changes == kMostChanges || !recordings.could_be_more()) return true;
     other = rows_with(recordings, fit.model);
     if (other && !many_more(recordings, *other)) other.reset();
     return !other;

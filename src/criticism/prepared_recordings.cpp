@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -44,44 +45,64 @@ FitOptions gated_fit(double gate) {
 
 namespace {
 
-/// One frame in so long; where errors of sightings last, for that.
-void thin(PreparedRecordings& prepared, double every, bool lasts) {
-  const std::size_t all = sightings_of(prepared.recordings);
-  prepared.sightings = {all, all, 0.0};
-  if (!(every > 0.0)) return;
-  std::vector<DrivenRecording> thinned = thinned_frames(prepared.recordings, every);
-  const std::size_t used = sightings_of(thinned);
-  if (used == all) return;
-  prepared.recordings = std::move(thinned);
-  prepared.sightings = {used, all, every};
-  prepared.notes.push_back(fmt::format(
-      "of {} sightings {} are used, one frame in {:g} s{}", all, used, every,
-      lasts ? ": errors of sightings last so long in this model (--every 0: all)" : ""));
+/// One frame in so long, of what there is.
+void thin(PreparedRecordings& prepared, double every, std::string_view why) {
+  if (every > 0.0) prepared.recordings = thinned_frames(prepared.recordings, every);
+  const std::size_t used = sightings_of(prepared.recordings);
+  prepared.sightings = {used, prepared.recorded, used < prepared.recorded ? every : 0.0};
+  if (!prepared.sightings.thinned()) return;
+  if (prepared.whole && !prepared.could_be_more()) {
+    prepared.sightings.every = prepared.pace;
+    why = ": more take long and tell little more (--every 0: all)";
+  }
+  prepared.notes.push_back(fmt::format("of {} sightings {} are used, one frame in {:g} s{}",
+                                       prepared.recorded, used, prepared.sightings.every, why));
 }
 
-/// As a model has the whole of them.
+/// As a model has them.
 void judge_rows(PreparedRecordings& prepared, const Model& model) {
   FitOptions how = prepared.fit;
   how.use_survey = false;
   prepared.recordings = *prepared.whole;
   const ModelFit without_survey = fit_model(prepared.recordings, model, how);
   if (prepared.fit.use_survey) leave_contradicting_points_out(prepared, without_survey);
-  thin(prepared, lasting_errors(without_survey).lasts, true);
+  thin(prepared, lasting_errors(without_survey).lasts,
+       ": errors of sightings last so long in this model (--every 0: all)");
+}
+
+/// s between frames, for there to be enough and no more; 0: all are.
+double pace_of(const std::vector<DrivenRecording>& recordings) {
+  constexpr double kStep = 0.1;  // s
+  constexpr int kMost = 10;
+  if (sightings_of(recordings) <= kEnoughSightings) return 0.0;
+  int steps = 1;
+  while (steps < kMost &&
+         sightings_of(richest_frames(recordings, kStep * steps)) > kEnoughSightings) {
+    ++steps;
+  }
+  return kStep * steps;
 }
 
 }  // namespace
+
+bool PreparedRecordings::could_be_more() const {
+  return whole && sightings.used < sightings_of(*whole);
+}
 
 PreparedRecordings prepare_recordings(std::vector<DrivenRecording> recordings, const Model& model,
                                       const FitOptions& fit, std::optional<double> every) {
   PreparedRecordings prepared;
   prepared.fit = fit;
+  prepared.recorded = sightings_of(recordings);
   if (!every && has_dense_frames(recordings)) {
+    prepared.pace = pace_of(recordings);
+    if (prepared.pace > 0.0) recordings = richest_frames(recordings, prepared.pace);
     prepared.whole = std::make_shared<const std::vector<DrivenRecording>>(std::move(recordings));
     judge_rows(prepared, model);
     return prepared;
   }
   prepared.recordings = std::move(recordings);
-  thin(prepared, every.value_or(0.0), false);
+  thin(prepared, every.value_or(0.0), "");
   return prepared;
 }
 
@@ -89,6 +110,8 @@ PreparedRecordings prepared_again(const PreparedRecordings& prepared, const Mode
   if (!prepared.whole) return prepared;
   PreparedRecordings again;
   again.whole = prepared.whole;
+  again.recorded = prepared.recorded;
+  again.pace = prepared.pace;
   again.fit = prepared.fit;
   judge_rows(again, model);
   return again;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_robust.hpp"
 
+#include "estimation/fitted_rows.hpp"
 #include "estimation/pose_reckoner.hpp"
 #include "estimation/robust_weights.hpp"
 #include "linalg/dense.hpp"
@@ -16,13 +17,16 @@
 namespace trussmap {
 namespace {
 
-/// A landmark without any sighting would be tied to nothing.
+/// A landmark without any sighting would be tied to nothing, unless it is surveyed: then one that
+/// is never seen but by labels misread would pull the robot to where it lies.
 void keep_one_per_landmark(const RecordingProblem& problem,
                            const std::vector<double>& squared_errors,
                            std::vector<double>& weights) {
   std::vector<std::size_t> best(problem.landmarks.size(), problem.measurements.size());
+  std::vector<bool> surveyed(problem.landmarks.size(), false);
   for (std::size_t k = 0; k < weights.size(); ++k) {
     const Measurement& one = problem.measurements[k];
+    if (is_surveyed_place(one)) surveyed[idx(one.from)] = true;
     if (!is_sighting(one)) continue;
     std::size_t& chosen = best[idx(one.to)];
     if (chosen == problem.measurements.size() || squared_errors[k] < squared_errors[chosen]) {
@@ -31,7 +35,8 @@ void keep_one_per_landmark(const RecordingProblem& problem,
   }
   constexpr double kLeast = 1e-3;
   for (const std::size_t k : best) {
-    if (k < weights.size()) weights[k] = std::max(weights[k], kLeast);
+    if (k == problem.measurements.size()) continue;
+    if (!surveyed[idx(problem.measurements[k].to)]) weights[k] = std::max(weights[k], kLeast);
   }
 }
 
@@ -204,7 +209,6 @@ class RobustDescent {
   bool readmit() {
     if (!std::isfinite(fit_.gate)) return false;
     constexpr double kFaint = 1e-10;  // a weight that tells nothing and hides no derivative
-    constexpr std::size_t kBatch = 64;
     std::vector<std::size_t> out;
     std::vector<double> weights = fit_.weights;
     for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -221,28 +225,17 @@ class RobustDescent {
       system_.set_weights(fit_.weights);
       return false;
     }
+    const FittedRows fitted(system_);  // of all at once: a solve for each would be out times nodes
     bool any = false;
-    for (std::size_t first = 0; first < out.size(); first += kBatch) {
-      const std::size_t end = std::min(out.size(), first + kBatch);
-      Eigen::MatrixXd rows;
-      for (std::size_t k = first; k < end; ++k) {
-        append_columns(rows, system_.transposed_rows(out[k]) / std::sqrt(kFaint));
-      }
-      const Eigen::MatrixXd solved = system_.solve(rows);
-      Eigen::Index at = 0;
-      for (std::size_t k = first; k < end; ++k) {
-        const Eigen::Index count = problem_.measurements[out[k]].rows;
-        const Eigen::VectorXd error =
-            system_.residuals().segment(system_.first_row(out[k]), count) / std::sqrt(kFaint);
-        Eigen::MatrixXd inner =
-            rows.middleCols(at, count).transpose() * solved.middleCols(at, count);
-        inner.diagonal().array() += 1.0;
-        if (error.dot(DenseLdlt(inner).solve(error)) <= fit_.gate) {
-          fit_.weights[out[k]] = 1.0;
-          any = true;
-        }
-        at += count;
-      }
+    for (const std::size_t k : out) {
+      const Eigen::Index count = problem_.measurements[k].rows;
+      const Eigen::VectorXd error =
+          system_.residuals().segment(system_.first_row(k), count) / std::sqrt(kFaint);
+      Eigen::MatrixXd inner = fitted.covariance(system_, k) / kFaint;
+      inner.diagonal().array() += 1.0;
+      if (error.dot(DenseLdlt(inner).solve(error)) > fit_.gate) continue;
+      fit_.weights[k] = 1.0;
+      any = true;
     }
     system_.set_weights(fit_.weights);
     return any;

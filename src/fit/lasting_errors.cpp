@@ -108,6 +108,57 @@ std::vector<DrivenRecording> thinned_frames(const std::vector<DrivenRecording>& 
   return result;
 }
 
+namespace {
+
+/// Sightings from afar of one instant.
+struct Frame {
+  double t = 0.0;
+  double tells = 0.0;
+};
+
+/// The frame of each sighting, -1 where the robot stands on the landmark.
+std::vector<int> frames_of(const std::vector<Sighting>& sightings, std::vector<Frame>& frames) {
+  std::map<std::string, double> count;
+  for (const Sighting& one : sightings) count[one.landmark] += 1.0;
+  std::vector<int> frame_of;
+  for (const Sighting& one : sightings) {
+    if (one.standing()) {
+      frame_of.push_back(-1);
+      continue;
+    }
+    if (frames.empty() || one.t - frames.back().t >= kOneFrame) frames.push_back({one.t, 0.0});
+    // What one more adds to the logarithm of the information about its landmark.
+    frames.back().tells += 1.0 / count[one.landmark];
+    frame_of.push_back(static_cast<int>(frames.size()) - 1);
+  }
+  return frame_of;
+}
+
+}  // namespace
+
+std::vector<DrivenRecording> richest_frames(const std::vector<DrivenRecording>& recordings,
+                                            double every) {
+  std::vector<DrivenRecording> result = recordings;
+  for (DrivenRecording& recording : result) {
+    std::vector<Frame> frames;
+    const std::vector<int> frame_of = frames_of(recording.sightings, frames);
+    std::map<double, std::size_t> richest;  // by the number of the span of time
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      const double span = std::floor((frames[k].t - frames.front().t) / every);
+      std::size_t& best = richest.try_emplace(span, k).first->second;
+      if (frames[k].tells > frames[best].tells) best = k;
+    }
+    std::vector<bool> kept(frames.size(), false);
+    for (const auto& [span, frame] : richest) kept[frame] = true;
+    std::size_t at = 0;
+    std::erase_if(recording.sightings, [&](const Sighting&) {
+      const int frame = frame_of[at++];
+      return frame >= 0 && !kept[idx(frame)];
+    });
+  }
+  return result;
+}
+
 bool has_dense_frames(const std::vector<DrivenRecording>& recordings) {
   int pairs = 0;
   for (const DrivenRecording& recording : recordings) {

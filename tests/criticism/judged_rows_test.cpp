@@ -19,16 +19,16 @@ constexpr double kRow = 0.1;   // s
 constexpr double kBase = 0.3;  // m
 constexpr double kGyroScale = 0.2;
 
-/// A robot that wanders among four landmarks, which it sees five times a second with white noise;
+/// A robot that wanders among four landmarks, which it sees ever so many rows with white noise;
 /// its gyro says a fifth too much.
-Recording wandering(std::uint64_t seed) {
+Recording wandering(std::uint64_t seed, int rows = 450, int rows_per_frame = 2) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   const std::vector<Vector2> landmarks{{3.0, 0.0}, {0.0, 2.6}, {-3.0, 0.0}, {0.0, -2.6}};
   Recording recording;
   Vector2 place(0.0, -1.0);
   double heading = 0.0;
-  for (int row = 1; row <= 450; ++row) {
+  for (int row = 1; row <= rows; ++row) {
     const double t = kRow * row;
     const double turn = kRow * (0.35 + 0.5 * std::sin(0.31 * t));
     const double way = kRow * (0.35 + 0.1 * std::sin(0.17 * t));
@@ -43,7 +43,7 @@ Recording wandering(std::uint64_t seed) {
     recording.drive.right.push_back(wheel(1.0));
     recording.drive.yaw_rate.push_back((1.0 + kGyroScale) * turn / kRow +
                                        0.0005 / std::sqrt(kRow) * normal(random));
-    if (row % 2 != 0) continue;
+    if (row % rows_per_frame != 0) continue;
     for (std::size_t k = 0; k < landmarks.size(); ++k) {
       const Vector2 offset = landmarks[k] - place;
       Sighting seen;
@@ -135,6 +135,31 @@ TEST(SlowJudgedRows, OneModelHasOneVerdict) {
   EXPECT_EQ(missing.verdict, Diagnosis::Verdict::missing);
   EXPECT_FALSE(missing.sightings.thinned());
   EXPECT_EQ(missing.missing, one.effect.name);
+}
+
+/// 500 s instead of 45 s, and ten frames a second.
+TEST(SlowPreparedRecordings, OfVeryManySightingsEnoughAreUsed) {
+  const Recording recording = wandering(2, 5000, 1);
+  ASSERT_GT(recording.sightings.size(), kEnoughSightings);
+  Model model = model_of_wandering();
+  model.effects.push_back(catalogue_effect("gyro scale"));
+  const PreparedRecordings rows = prepare_recordings({recording}, model, gated_fit());
+  EXPECT_EQ(rows.sightings.all, recording.sightings.size());
+  EXPECT_LE(rows.sightings.used, kEnoughSightings);
+  EXPECT_GT(rows.sightings.used, kEnoughSightings / 2);
+  EXPECT_EQ(rows.sightings.every, rows.pace);
+  EXPECT_FALSE(rows.could_be_more());
+  ASSERT_EQ(rows.notes.size(), 1U);
+  EXPECT_NE(rows.notes.front().find("--every 0: all"), std::string::npos) << rows.notes.front();
+  EXPECT_TRUE(use_the_same(rows, prepared_again(rows, model)));
+  // The gyro says a fifth too much, and the fit holds that to within its error.
+  const ModelFit fit = fit_model(rows.recordings, model, gated_fit());
+  const EffectEstimate& scale = fit.effects.front();
+  EXPECT_NEAR(scale.effect.coefficients.front(), -kGyroScale / (1.0 + kGyroScale),
+              4.0 * scale.sd.front());
+  // Asked for all, all are used.
+  const PreparedRecordings all = prepare_recordings({recording}, model, gated_fit(), 0.0);
+  EXPECT_EQ(all.sightings.used, recording.sightings.size());
 }
 
 TEST(UsedSightings, AreInTheVerdict) {

@@ -5,6 +5,7 @@
 #include "fit/effect_columns.hpp"
 #include "trussmap/fit_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -95,6 +96,37 @@ TEST(LastingErrors, ThinnedFramesAreWholeAndSoFarApart) {
       EXPECT_NEAR(left[k].t - left[k - 1].t, 2.0, 0.11);
     }
   }
+}
+
+/// One of each span, whole, and never one that tells less than another of it.
+TEST(RichestFrames, AreTheFullestAndThoseOfWhatIsRarelySeen) {
+  DrivenRecording recording = circling(0.0, 4);
+  const auto see = [&](std::size_t frame, const std::string& landmark) {
+    Sighting more = recording.sightings[4 * frame];
+    more.landmark = landmark;
+    recording.sightings.push_back(more);
+  };
+  for (std::size_t frame = 3; frame < 1200; frame += 10) see(frame, "often");
+  see(127, "once");
+  Sighting on;
+  on.t = 55.55;
+  on.landmark = "stood on";
+  recording.sightings.push_back(on);
+  std::stable_sort(recording.sightings.begin(), recording.sightings.end(),
+                   [](const Sighting& a, const Sighting& b) { return a.t < b.t; });
+  const std::vector<DrivenRecording> rich = richest_frames({recording}, 0.9999);
+  ASSERT_EQ(rich.size(), 1U);
+  const std::vector<Sighting>& left = rich.front().sightings;
+  const auto count = [&left](const std::string& landmark) {
+    return std::count_if(left.begin(), left.end(),
+                         [&](const Sighting& one) { return one.landmark == landmark; });
+  };
+  EXPECT_EQ(count("a"), 120);  // spans of a little less than 1 s in 119.9 s
+  EXPECT_EQ(count("b"), 120);
+  EXPECT_GE(count("often"), 119);  // but where `once` was seen
+  EXPECT_EQ(count("once"), 1);
+  EXPECT_EQ(count("stood on"), 1);
+  EXPECT_EQ(richest_frames({recording}, 0.01).front().sightings.size(), recording.sightings.size());
 }
 
 /// A delay moves the first frames out of the drive; the last, which are nonsense, stay left out.
