@@ -5,7 +5,7 @@
 #include "trussmap/catalogue.hpp"
 #include "trussmap/fit_model.hpp"
 #include "trussmap/noise_fit.hpp"
-#include "trussmap/prepared_recordings.hpp"
+#include "trussmap/compare.hpp"
 
 #include <cmath>
 #include <numbers>
