@@ -14,6 +14,7 @@
 // body's.
 #include "datasets/formats.hpp"
 #include "datasets/number_rows.hpp"
+#include "datasets/phil_frames.hpp"
 #include "geometry/index.hpp"
 #include "geometry/units.hpp"
 #include "io/csv.hpp"
@@ -23,14 +24,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -54,14 +52,6 @@ constexpr double kShortestRow = 0.2;  // s
 
 constexpr double kLongestGap = 0.2;      // s between two samples of the gyro
 constexpr double kLargestRate = 2000.0;  // deg/s, what the sensor can show
-
-constexpr double kFrameRate = 100.0;   // Hz
-constexpr double kTruthStep = 0.1;     // s
-constexpr double kFastestBody = 5.0;   // m/s
-constexpr double kFastestTurn = 20.0;  // rad/s
-// The tracked body's x axis points to the right of the robot's and a little back: by its course
-// while it drives straight on, 104.2 to 104.9 deg in three trials.
-constexpr double kAheadOfBody = 104.4 * kDegree;
 
 struct PhilRecording {
   Recording recording;
@@ -290,107 +280,6 @@ void add_gyro(const Counter& gyro, double late, Drive& drive) {
   }
 }
 
-// ----------------------------------------
-// Motion capture
-
-/// Cells of a line, NaN where one is empty.
-std::vector<double> cells(std::string_view content, const std::string& file, std::size_t line) {
-  std::vector<double> row;
-  for (std::size_t at = 0; at <= content.size();) {
-    const std::size_t end = std::min(content.find(',', at), content.size());
-    std::string_view word = content.substr(at, end - at);
-    at = end + 1;
-    while (!word.empty() && kWhiteSpace.find(word.front()) != std::string_view::npos) {
-      word.remove_prefix(1);
-    }
-    while (!word.empty() && kWhiteSpace.find(word.back()) != std::string_view::npos) {
-      word.remove_suffix(1);
-    }
-    double value = kAbsent;
-    if (!word.empty()) {
-      const auto [rest, status] = std::from_chars(word.data(), word.data() + word.size(), value);
-      constexpr double kLargest = 1e9;  // mm, or frames: beyond any arena
-      if (status != std::errc() || rest != word.data() + word.size() ||
-          !(std::abs(value) <= kLargest)) {
-        throw InputError(file, line, shown_field(word) + ", expected a number of size 1e9 at most");
-      }
-    }
-    row.push_back(value);
-  }
-  return row;
-}
-
-/// atan2(R21, R11) of the rotation by the vector's length about it.
-double heading_of(double x, double y, double z) {
-  const double angle = std::hypot(x, y, z);
-  if (!(angle > 0.0)) return 0.0;
-  const double c = std::cos(angle);
-  const double s = std::sin(angle) / angle;
-  const double rest = (1.0 - c) / (angle * angle);
-  return std::atan2(s * z + rest * x * y, c + rest * x * x);
-}
-
-/// Of a frame: frame, rotation vector [rad], position [mm].
-std::optional<TruthRow> pose_of(const std::vector<double>& row, double t) {
-  bool zero = true;
-  for (std::size_t k = 1; k < row.size(); ++k) {
-    if (std::isnan(row[k])) return {};
-    zero = zero && row[k] == 0.0;
-  }
-  if (zero) return {};
-  return TruthRow{t, 1e-3 * row[4], 1e-3 * row[5],
-                  wrap_angle(heading_of(row[1], row[2], row[3]) + kAheadOfBody)};
-}
-
-bool jumps(const TruthRow& from, const TruthRow& to) {
-  const double lasts = to.t - from.t;
-  return std::hypot(to.x - from.x, to.y - from.y) > kFastestBody * lasts ||
-         std::abs(wrap_angle(to.heading - from.heading)) > kFastestTurn * lasts;
-}
-
-void read_truth(const fs::path& folder, PhilRecording& result) {
-  const fs::path file = require_plain_or_xz(folder / "mocap_robot.csv");
-  const std::string text = read_file(file);
-  std::vector<TruthRow>& truth = result.recording.truth;
-  std::optional<double> first, frame;
-  std::optional<TruthRow> good;
-  std::size_t line = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view content = std::string_view(text).substr(at, end - at);
-    at = end + 1;
-    ++line;
-    const std::size_t begin = content.find_first_not_of(kWhiteSpace);
-    if (begin == std::string_view::npos || content[begin] == '#') continue;
-    const std::vector<double> row = cells(content, file.string(), line);
-    if (row.size() != 7) {
-      throw InputError(file.string(), line,
-                       std::to_string(row.size()) +
-                           " fields, expected 7: frame, rotation "
-                           "vector, position");
-    }
-    if (!(row[0] > frame.value_or(-std::numeric_limits<double>::infinity()))) {
-      throw InputError(file.string(), line,
-                       "the frame's number is empty or does not grow, expected a larger one");
-    }
-    frame = row[0];
-    if (!first) first = frame;
-    const std::optional<TruthRow> pose = pose_of(row, since(*first, *frame) / kFrameRate);
-    if (!pose || (good && jumps(*good, *pose))) {
-      ++result.lost_frames;
-      continue;
-    }
-    good = pose;
-    if (pose->t > result.recording.drive.t.back()) continue;
-    if (truth.empty() || pose->t - truth.back().t > kTruthStep - 0.5 / kFrameRate) {
-      truth.push_back(*pose);
-    }
-  }
-  if (truth.empty()) {
-    throw InputError(file.string(), 0, "no frame shows the robot, expected its poses");
-  }
-}
-
 /// The wheels' noise is mostly when their counts were taken, the truth's is a mast that sways. The
 /// gyro's is the sensor's: three times what it shows at rest, and what a straight drive bears out;
 /// where it is more, in turns, it is estimated.
@@ -438,7 +327,7 @@ Dataset read_phil(const fs::path& folder) {
   const Counter gyro = read_gyro(folder, result.stale_samples);
   align(turn_of_wheels(ticks), gyro, result);
   add_gyro(gyro, result.gyro_late, drive);
-  read_truth(folder, result);
+  result.recording.truth = read_phil_frames(folder, drive.t.back(), result.lost_frames);
   std::vector<DatasetFigure> figures{
       counted("tick_rows", result.tick_rows, "rows of ticks, of which were made"),
       counted("rows", drive.rows(), "drive rows"),
