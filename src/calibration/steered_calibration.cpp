@@ -70,7 +70,22 @@ class Starts {
     return false;
   }
 
-  [[nodiscard]] bool is_possible() const { return best_ && scatter_of(*best_) < kPossible; }
+  [[nodiscard]] bool is_below(double scatter) const {
+    if (!best_ || scatter_of(*best_) >= scatter) return false;
+    return !is_geared();
+  }
+
+  /// Whether it may be the steering that turns many times as far, where its gain is not told.
+  [[nodiscard]] bool is_geared() const {
+    constexpr double kMuch = 2.5;
+    if (!best_) return false;
+    for (const DriveConstant& one : best_->constants) {
+      if (one.channel != Channel::turn) continue;
+      const double factor = 1.0 + one.g.value;
+      return factor > kMuch || factor < 1.0 / kMuch;
+    }
+    return false;
+  }
 
   /// Throws what the first start led to, where none led anywhere.
   [[nodiscard]] WheelCalibration best() {
@@ -91,15 +106,16 @@ class Starts {
 /// Without the constants that few robots have.
 WheelCalibration calibrated_as_usual(const std::vector<DrivenRecording>& recordings,
                                      const Model& model, const WheelCalibrationOptions& options) {
+  constexpr double kGood = 2.0;  // chi^2/dof: no other start is asked then
   const std::vector<double> stated = in_force(model);
   Starts starts(recordings, model, options);
   const bool nearby = starts.try_from(stated, true);
-  if (starts.is_possible()) return starts.best();
+  if (starts.is_below(kPossible)) return starts.best();
   for (const std::vector<double>& one : likely_starts(recordings, model, options)) {
     if (one != stated) static_cast<void>(starts.try_from(one, false));
-    if (starts.is_possible()) return starts.best();
+    if (starts.is_below(kGood)) return starts.best();
   }
-  if (nearby) return starts.best();
+  if (nearby && !starts.is_geared()) return starts.best();
   // A steering whose encoder is geared may turn many times as far as is believed: least squares
   // find that only from near by.
   const std::size_t gain = *place_of_gain(model.robot);
