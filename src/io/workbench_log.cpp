@@ -46,7 +46,7 @@ ordered_json fingerprints_of(const std::vector<DrivenRecording>& recordings) {
   return list;
 }
 
-ordered_json json(const WorkbenchStep& step) {
+ordered_json json_of_step(const WorkbenchStep& step) {
   ordered_json result = {{"kind", name_of(step.kind)},
                          {"effect", step.effect},
                          {"from", step.from},
@@ -123,7 +123,7 @@ WorkbenchStep step_of(const ordered_json& json, std::size_t number, std::size_t 
 std::string format_workbench_log(const WorkbenchLog& log,
                                  const std::vector<DrivenRecording>& recordings) {
   ordered_json steps = ordered_json::array();
-  for (const WorkbenchStep& step : log.steps) steps.push_back(json(step));
+  for (const WorkbenchStep& step : log.steps) steps.push_back(json_of_step(step));
   const ordered_json whole = {{"format", kFormat},
                               {"recordings", fingerprints_of(recordings)},
                               {"at", log.at},

@@ -61,7 +61,7 @@ std::vector<std::string> named_on(const std::vector<std::string>& lines, const s
 
 /// Whether an effect of the catalogue asks for a column of another kind than it is named with.
 bool has_wrong_role(const std::string& text) {
-  return matches(text, "load on (the wheels|one wheel) \\((?!payload|[a-z_]*(load|mass|kg))") ||
+  return matches(text, "load on (both wheels|one wheel) \\((?!payload|[a-z_]*(load|mass|kg))") ||
          matches(text, "(tyre drift|gyro temperature drift) \\((payload_kg|lights)");
 }
 
