@@ -70,7 +70,7 @@ void add_fitted_recordings(const Command& command, ModelRecordingsOptions& optio
   command
       .add_option("--every", options.every,
                   "Use one frame of sightings in so many seconds (0: all; else as long as their "
-                  "errors are found to last and, of more than 12000 sightings, up to 1)")
+                  "errors are found to last and, of more than 30000 sightings, up to 1)")
       .check(zero_or_more());
 }
 

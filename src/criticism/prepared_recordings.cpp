@@ -74,7 +74,8 @@ void judge_rows(PreparedRecordings& prepared, const Model& model) {
 double pace_of(const std::vector<DrivenRecording>& recordings) {
   constexpr double kStep = 0.1;  // s
   constexpr int kMost = 10;
-  if (sightings_of(recordings) <= kEnoughSightings) return 0.0;
+  constexpr std::size_t kMany = 30000;  // fewer are soon judged, and errors that last seen finer
+  if (sightings_of(recordings) <= kMany) return 0.0;
   int steps = 1;
   while (steps < kMost &&
          sightings_of(richest_frames(recordings, kStep * steps)) > kEnoughSightings) {

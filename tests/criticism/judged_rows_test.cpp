@@ -137,10 +137,10 @@ TEST(SlowJudgedRows, OneModelHasOneVerdict) {
   EXPECT_EQ(missing.missing, one.effect.name);
 }
 
-/// 500 s instead of 45 s, and ten frames a second.
+/// 800 s instead of 45 s, and ten frames a second.
 TEST(SlowPreparedRecordings, OfVeryManySightingsEnoughAreUsed) {
-  const Recording recording = wandering(2, 5000, 1);
-  ASSERT_GT(recording.sightings.size(), kEnoughSightings);
+  const Recording recording = wandering(2, 8000, 1);
+  ASSERT_GT(recording.sightings.size(), 30000U);
   Model model = model_of_wandering();
   model.effects.push_back(catalogue_effect("gyro scale"));
   const PreparedRecordings rows = prepare_recordings({recording}, model, gated_fit());
