@@ -6,6 +6,7 @@
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
+#include "trussmap/workbench.hpp"
 
 #include <filesystem>
 #include <string>

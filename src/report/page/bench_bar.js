@@ -21,7 +21,7 @@ function staircase(state) {
   const points = way.flatMap((step, k) => [`${k * wide},${y(step.mm)}`, `${(k + 1) * wide},${y(step.mm)}`]);
   const words = way.map(step => step.mm.toFixed(1)).join(', ') + ' mm step by step' +
       (floor > 0 ? `; noise alone ${floor.toFixed(1)} mm` : '');
-  return drawn('svg', {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'img', 'aria-label': words},
+  return drawn('svg', {preserveAspectRatio: 'none', viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'img', 'aria-label': words},
                drawn('line', {class: 'floor', x1: 0, x2: WIDTH, y1: y(floor), y2: y(floor)}),
                drawn('polyline', {points: points.join(' ')}));
 }
