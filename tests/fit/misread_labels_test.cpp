@@ -3,9 +3,9 @@
 //
 // Labels taken for others beside a survey: the rest's fit stays as it is.
 #include "trussmap/catalogue.hpp"
+#include "trussmap/compare.hpp"
 #include "trussmap/fit_model.hpp"
 #include "trussmap/noise_fit.hpp"
-#include "trussmap/compare.hpp"
 
 #include <cmath>
 #include <numbers>
