@@ -36,12 +36,12 @@ void add_tolerance(const Command& command, std::string& tolerance) {
                   "How far off legs that no fit has seen may end (root mean square): 20mm, 2cm, "
                   "0.02m. Beyond it the exit status is 1")
       .type_name("LENGTH")
-      .check(Check(
-          [](std::string& text) {
-            return length_of(text) ? std::string()
-                                   : "expected a length above 0, as 20mm, 2cm or 0.02m";
-          },
-          ""));
+      .check({[](const std::string& text) {
+                return length_of(text)
+                           ? std::string()
+                           : "'" + text + "' is no length above 0, expected 20mm, 2cm or 0.02m";
+              },
+              ""});
 }
 
 std::optional<Tolerance> judged(const std::string& tolerance, const HeldOut& held_out) {
