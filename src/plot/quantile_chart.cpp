@@ -79,9 +79,10 @@ Chart quantile_chart(const std::string& id, const std::string& title,
 
 Chart histogram_chart(const std::string& id, const std::string& title,
                       const std::vector<SourceResiduals>& sources) {
-  constexpr int kReach = 10;     // steps either way; the last ones take what is beyond
+  constexpr int kSteps = 20;  // half of them either way; the last ones take what is beyond
+  constexpr int kReach = kSteps / 2;
   constexpr double kStep = 0.5;  // standard deviations
-  std::vector<double> counts(2 * kReach, 0.0);
+  std::vector<double> counts(kSteps, 0.0);
   double all = 0.0;
   for (const SourceResiduals& one : sources) {
     for (const double z : one.standardised) {
@@ -106,7 +107,7 @@ Chart histogram_chart(const std::string& id, const std::string& title,
   chart.height = 300.0;
   ChartLayer normal{LayerKind::line, "as stated", {{""}, {""}}, "faint"};
   ChartLayer seen{LayerKind::line, "seen", {{chart.x.title}, {chart.y.title}}, "1"};
-  for (int k = 0; all >= static_cast<double>(kFewest) && k < 2 * kReach; ++k) {
+  for (int k = 0; all >= static_cast<double>(kFewest) && k < kSteps; ++k) {
     const double from = kStep * (k - kReach);
     // normal_p_value(x): the share beyond x.
     const double within = normal_p_value(from) - normal_p_value(from + kStep);
