@@ -106,20 +106,26 @@ Chart histogram_chart(const std::string& id, const std::string& title,
   chart.y.zero = true;
   chart.height = 300.0;
   ChartLayer normal{LayerKind::line, "as stated", {{""}, {""}}, "faint"};
-  ChartLayer seen{LayerKind::line, "seen", {{chart.x.title}, {chart.y.title}}, "1"};
+  ChartLayer outline{LayerKind::line, "", {{""}, {""}}, "1"};
+  ChartLayer seen{LayerKind::dots, "seen", {{chart.x.title}, {chart.y.title}}, "1"};
+  seen.size = 3.0;
   for (int k = 0; all >= static_cast<double>(kFewest) && k < kSteps; ++k) {
     const double from = kStep * (k - kReach);
     // normal_p_value(x): the share beyond x.
     const double within = normal_p_value(from) - normal_p_value(from + kStep);
+    const double share = 100.0 * counts[static_cast<std::size_t>(k)] / all;
     for (const double x : {from, from + kStep}) {
       normal.columns[0].numbers.push_back(x);
       normal.columns[1].numbers.push_back(100.0 * within);
-      seen.columns[0].numbers.push_back(x);
-      seen.columns[1].numbers.push_back(100.0 * counts[static_cast<std::size_t>(k)] / all);
+      outline.columns[0].numbers.push_back(x);
+      outline.columns[1].numbers.push_back(share);
     }
+    seen.columns[0].numbers.push_back(from + 0.5 * kStep);
+    seen.columns[1].numbers.push_back(share);
   }
   if (seen.columns[0].numbers.empty()) return chart;
   chart.layers.push_back(std::move(normal));
+  chart.layers.push_back(std::move(outline));
   chart.layers.push_back(std::move(seen));
   return chart;
 }

@@ -35,7 +35,8 @@ TEST(QuantileChart, NormalErrorsLieOnALineWhoseSlopeIsTheirSpread) {
 
 TEST(HistogramChart, SharesAreThoseOfTheSampleAndOfANormalDistribution) {
   const Chart chart = histogram_chart("h", "H", {normal_sample("wheels", 20000, 1.0)});
-  ASSERT_EQ(chart.layers.size(), 2U);
+  ASSERT_EQ(chart.layers.size(), 3U);
+  EXPECT_EQ(chart.layers[2].columns[1].numbers.size(), 20U);
   const std::vector<double>& normal = chart.layers[0].columns[1].numbers;
   const std::vector<double>& seen = chart.layers[1].columns[1].numbers;
   ASSERT_EQ(seen.size(), 40U);  // both ends of 20 steps
