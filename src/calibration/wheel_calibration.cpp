@@ -262,10 +262,14 @@ void require_positive(const std::vector<double>& g, const Wanted& wanted,
                       const std::vector<DrivenRecording>& recordings, const Model& model,
                       const ProblemOptions& options) {
   const std::vector<SoughtConstant> constants = sought_constants(model.robot);
+  const bool truth = options.truth && std::any_of(recordings.begin(), recordings.end(),
+                                                  [](const DrivenRecording& recording) {
+                                                    return !recording.truth.empty();
+                                                  });
   for (std::size_t k = 0; k < constants.size(); ++k) {
     const double ratio = constants[k].ratio(g[k]);
     if (!wanted[k] || ratio > 0.0) continue;
-    const std::string why = options.truth ? describe(heading_offset(recordings, model.robot)) : "";
+    const std::string why = truth ? describe(heading_offset(recordings, model.robot)) : "";
     throw SolveError(fmt::format(
         "not calibrated: {} would be {:.3g}, which no robot has; {}", constants[k].symbol, ratio,
         why.empty() ? "are left and right exchanged, or the signs of x or y?" : why));
