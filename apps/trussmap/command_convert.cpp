@@ -42,7 +42,7 @@ struct ConvertOptions {
 };
 
 void print_figure(const DatasetFigure& one) {
-  if (one.value == 0.0) return;
+  if (one.value == 0.0 || one.words.empty()) return;
   if (one.value == std::floor(one.value)) {
     fmt::print("  {:>7.0f} {}\n", one.value, one.words);
   } else {
@@ -55,6 +55,7 @@ void convert_dataset(const DatasetFormat& format, const fs::path& in, const fs::
   write_recording(out, read.recording, read.comment, {{"model.toml", format_model(read.model)}});
   fmt::print("converted: {} {} to the recording {}\n\n", format.name, in.string(), out.string());
   for (const DatasetFigure& one : read.figures) print_figure(one);
+  for (const std::string& note : read.notes) fmt::print("  {}\n", note);
 }
 
 /// A recording is a folder; a map's or bag's name for it is a mistake.
@@ -154,7 +155,8 @@ void run_convert(ConvertOptions options) {
     return;
   }
   const DatasetFormat* const format = dataset_format(in);
-  const bool graph = in.extension() == ".g2o";  // a map, unless it is to become a recording
+  // A map, unless it is to become a recording.
+  const bool graph = in.extension() == ".g2o" || in.string().ends_with(".g2o.xz");
   if (format != nullptr && (!graph || out.extension().empty())) {
     check_folder(out);
     convert_dataset(*format, in, out);

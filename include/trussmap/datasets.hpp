@@ -3,8 +3,8 @@
 //
 // Component trussmap::datasets.
 //
-// Public data sets as recordings: one table of formats, one function that reads
-// any of them. What each file's columns are stands at the top of its reader (src/datasets).
+// Public data sets as recordings: one table of formats, one function that reads any of them. What
+// each file's columns are stands at the top of its reader (src/datasets).
 #pragma once
 
 #include "trussmap/model.hpp"
@@ -22,16 +22,18 @@ namespace trussmap {
 struct DatasetFigure {
   std::string key;  ///< "merged_times"
   double value = 0.0;
-  std::string words;  ///< "odometry rows merged: their time repeats or runs backwards"
+  std::string
+      words;  ///< "odometry rows merged: their time repeats or runs backwards"; "": of a note
 };
 
 struct Dataset {
   Recording recording;  ///< times from 0 on, in s
   Model model;          ///< the robot as its makers state it, and noise that suits the set
 
-  double epoch = 0.0;                  ///< s, of t = 0, where the set counts from elsewhere
-  std::string comment;                 ///< lines on where it comes from and where its times begin
-  std::vector<DatasetFigure> figures;  ///< in the order in which they are told; zeros, too
+  double epoch = 0.0;                   ///< s, of t = 0, where the set counts from elsewhere
+  std::string comment;                  ///< lines on where it comes from and where its times begin
+  std::vector<DatasetFigure> figures;   ///< in the order in which they are told; zeros, too
+  std::vector<std::string> notes = {};  ///< what else was done, a sentence each
 
   /// By its key; throws std::out_of_range where there is none.
   [[nodiscard]] double figure(std::string_view key) const;

@@ -60,12 +60,4 @@ Dataset read_dataset(const std::filesystem::path& path) {
   throw InputError(path.string(), 0, "is no data set that is known, expected " + expected);
 }
 
-DatasetFigure counted(const char* key, std::size_t number, const char* words) {
-  return {key, static_cast<double>(number), words};
-}
-
-DatasetFigure counted(const char* key, int number, const char* words) {
-  return {key, static_cast<double>(number), words};
-}
-
 }  // namespace trussmap

@@ -7,6 +7,7 @@
 
 #include "trussmap/datasets.hpp"
 
+#include <concepts>
 #include <filesystem>
 
 namespace trussmap {
@@ -39,7 +40,9 @@ namespace trussmap {
 [[nodiscard]] Dataset read_graph_recording(const std::filesystem::path& file);
 
 /// Rows of what a recording has, the first figures of most formats.
-[[nodiscard]] DatasetFigure counted(const char* key, std::size_t number, const char* words);
-[[nodiscard]] DatasetFigure counted(const char* key, int number, const char* words);
+template <std::integral Number>
+[[nodiscard]] DatasetFigure counted(const char* key, Number number, const char* words) {
+  return {key, static_cast<double>(number), words};
+}
 
 }  // namespace trussmap

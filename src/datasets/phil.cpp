@@ -336,11 +336,15 @@ Dataset read_phil(const fs::path& folder) {
               "rows that repeat a sample of the gyro skipped"),
       counted("lost_frames", result.lost_frames,
               "frames without the robot, or where it jumps, left out"),
-      {"gyro_late", result.gyro_late, "s that the gyro's clock was set back by, by its turns"},
-      {"gyro_likeness", result.gyro_likeness, "is the correlation of its turns and the wheels'"}};
-  return {std::move(result.recording), turtlebot_model(), result.epoch,
-          fmt::format("t = 0 is {:.3f} s, Unix time\n{}", result.epoch, on_clocks(result)),
-          std::move(figures)};
+      {"gyro_late", result.gyro_late, ""},
+      {"gyro_likeness", result.gyro_likeness, ""}};
+  const std::string clocks = on_clocks(result);
+  return {std::move(result.recording),
+          turtlebot_model(),
+          result.epoch,
+          fmt::format("t = 0 is {:.3f} s, Unix time\n{}", result.epoch, clocks),
+          std::move(figures),
+          {clocks}};
 }
 
 }  // namespace trussmap
