@@ -60,7 +60,8 @@ struct HeldOut : HeldOutMetrics {
 
 /// Coefficients are estimated anew without the held-out legs, from these recordings, of which `fit`
 /// is. Those that the other legs cannot show stay as they are; legs to landmarks that neither
-/// another leg sees nor a survey knows are passed over. Throws like fit_model.
+/// another leg sees nor a survey knows are passed over, and legs that are partly in times that the
+/// fit excludes (FitOptions::excluded). Throws like fit_model.
 [[nodiscard]] HeldOut predict_held_out(const std::vector<DrivenRecording>& recordings,
                                        const ModelFit& fit, const LegOptions& legs = {});
 [[nodiscard]] inline HeldOut predict_held_out(const std::vector<Recording>& recordings,

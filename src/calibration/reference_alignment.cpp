@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/reference_alignment.hpp"
 
+#include "calibration/sensor_places.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -295,10 +297,7 @@ ReferenceAlignment alignment_of(const std::vector<DrivenRecording>& recordings, 
 
 Mountings with_found(Mountings mounted, const ReferenceAlignment& found) {
   for (const CalibratedMounting& one : found.mountings) {
-    std::optional<Mounting>& at = one.of == "tracked"   ? mounted.tracked
-                                  : one.of == "antenna" ? mounted.antenna
-                                  : one.of == "sensor"  ? mounted.sensor
-                                                        : mounted.scanner;
+    std::optional<Mounting>& at = mounted.*place_named(one.of);
     if (!one.x && !one.y && !one.yaw) continue;
     if (!at) at.emplace();
     if (one.x) at->x = one.x->value;

@@ -268,11 +268,7 @@ void add_places(const std::vector<CalibratedMounting>& found, const Model& befor
                 std::vector<RobotConstant>& list) {
   const Mountings stated = with_places_in_robot(before).robot.mounted;
   for (const CalibratedMounting& one : found) {
-    const Mounting was = (one.of == "antenna"   ? stated.antenna
-                          : one.of == "sensor"  ? stated.sensor
-                          : one.of == "tracked" ? stated.tracked
-                                                : stated.scanner)
-                             .value_or(Mounting());
+    const Mounting was = stated_place(stated, one.of);
     const auto add = [&](const char* name, const char* unit, double old,
                          const std::optional<Calibrated>& value, const char* note) {
       if (!value) return;

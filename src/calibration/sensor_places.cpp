@@ -172,6 +172,17 @@ Model with_places_in_robot(Model model) {
   return model;
 }
 
+MountingPlace place_named(std::string_view of) {
+  return of == "antenna"   ? &Mountings::antenna
+         : of == "sensor"  ? &Mountings::sensor
+         : of == "tracked" ? &Mountings::tracked
+                           : &Mountings::scanner;
+}
+
+Mounting stated_place(const Mountings& stated, std::string_view of) {
+  return (stated.*place_named(of)).value_or(Mounting());
+}
+
 Mountings started_places(const std::vector<DrivenRecording>& recordings, const Robot& robot) {
   Mountings mounted = robot.mounted;
   if (!mounted.scanner) mounted.scanner = place_by(recordings, robot, motions_of_loops);

@@ -19,12 +19,20 @@
 #include "trussmap/model.hpp"
 #include "trussmap/robot.hpp"
 
+#include <optional>
+#include <string_view>
 #include <vector>
 
 namespace trussmap {
 
 /// The model with its constant effects of places in [robot]; they stay, with 0.
 [[nodiscard]] Model with_places_in_robot(Model model);
+
+/// The place that a CalibratedMounting is of, by its name: antenna, sensor, tracked or scanner.
+using MountingPlace = std::optional<Mounting> Mountings::*;
+[[nodiscard]] MountingPlace place_named(std::string_view of);
+/// As stated; the axle's centre where nothing is.
+[[nodiscard]] Mounting stated_place(const Mountings& stated, std::string_view of);
 
 /// Where nothing is stated of the scanner or the sensor, what loops, and landmarks that are seen
 /// again by range and bearing or stood on, say of it; as stated where they tell no place.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/stack_values.hpp"
 
+#include "drive/wheel_kinematics.hpp"
 #include "trussmap/dead_reckoning.hpp"
 
 #include <algorithm>
@@ -67,15 +68,12 @@ class Told {
 
   /// By what the length that turns go by is to be multiplied.
   [[nodiscard]] std::optional<double> length() const {
-    const bool by_wheelbase =
-        robot_.drive == DriveKind::differential || robot_.drive == DriveKind::skid_steer;
-    const RobotConstant* found =
-        find(by_wheelbase || robot_.drive == DriveKind::mecanum ? "wheelbase"
-             : robot_.drive == DriveKind::omni3                 ? "radius"
-                                                                : "length");
+    const bool by_wheelbase = has_left_and_right(robot_) || robot_.drive == DriveKind::mecanum;
+    const RobotConstant* found = find(by_wheelbase                       ? "wheelbase"
+                                      : robot_.drive == DriveKind::omni3 ? "radius"
+                                                                         : "length");
     if (found == nullptr) return std::nullopt;
-    const bool stands = by_wheelbase || robot_.drive == DriveKind::mecanum;
-    return found->after / (stands ? robot_.wheelbase : robot_.length);
+    return found->after / (by_wheelbase ? robot_.wheelbase : robot_.length);
   }
 
   /// Mean of all wheels, whether or not it was asked for.

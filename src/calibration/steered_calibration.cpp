@@ -134,11 +134,7 @@ double moved_aside(const WheelCalibration& found, const Mountings& stated) {
   double sum = 0.0;
   for (const CalibratedMounting& one : found.mountings) {
     if (!one.y || !(one.y->sd > 0.0)) continue;
-    const Mounting was = (one.of == "antenna"   ? stated.antenna
-                          : one.of == "sensor"  ? stated.sensor
-                          : one.of == "tracked" ? stated.tracked
-                                                : stated.scanner)
-                             .value_or(Mounting());
+    const Mounting was = stated_place(stated, one.of);
     sum += std::min(kMost, std::pow((one.y->value - was.y) / one.y->sd, 2));
   }
   return sum;

@@ -7,6 +7,7 @@
 // those of a robot whose length and whose wheels' places y, z to the left are 1 + g times less.
 #include "calibration/constant_values.hpp"
 #include "calibration/sought_constants.hpp"
+#include "effects/steering.hpp"
 #include "trussmap/calibrate.hpp"
 
 #include <algorithm>
@@ -16,6 +17,14 @@
 namespace trussmap {
 namespace {
 
+/// A constant that calibrations find, with a size.
+bool is_found(const Effect& effect, const std::vector<SoughtConstant>& sought) {
+  return effect.is_constant() && !effect.per_session && !effect.coefficients.empty() &&
+         std::ranges::any_of(sought, [&effect](const SoughtConstant& one) {
+           return one.name == effect.name && one.channel == effect.channel;
+         });
+}
+
 /// Places of wheels to the left; whether all that are not in the middle were found: as turning is
 /// scaled, so are they.
 bool take_sides_in_robot(const std::vector<SoughtConstant>& sought, Model& model) {
@@ -23,12 +32,7 @@ bool take_sides_in_robot(const std::vector<SoughtConstant>& sought, Model& model
   bool measured = robot.wheel_left == 0.0;
   bool steered = robot.steer_left == 0.0;
   std::erase_if(model.effects, [&](const Effect& one) {
-    const bool of_wheel = one.channel == Channel::wheel_left || one.channel == Channel::steer_left;
-    const auto name = std::ranges::find(sought, one.channel, &SoughtConstant::channel);
-    if (!of_wheel || name == sought.end() || name->name != one.name || !one.is_constant() ||
-        one.per_session || one.coefficients.empty()) {
-      return false;
-    }
+    if (!is_wheels_place(one.channel) || !is_found(one, sought)) return false;
     const bool travel = one.channel == Channel::wheel_left;
     (travel ? robot.wheel_left : robot.steer_left) += one.coefficients.front();
     (travel ? measured : steered) = true;
@@ -48,13 +52,7 @@ Model with_wheelbase_in_robot(Model model) {
   std::vector<Effect*> found;
   ChannelGains in_turn;
   for (Effect& effect : model.effects) {
-    const bool is_sought =
-        std::any_of(sought.begin(), sought.end(), [&effect](const SoughtConstant& one) {
-          return one.name == effect.name && one.channel == effect.channel;
-        });
-    if (!is_sought || !effect.is_constant() || effect.per_session || effect.coefficients.empty()) {
-      continue;
-    }
+    if (!is_found(effect, sought)) continue;
     double& g = effect.coefficients.front();
     if (effect.channel == Channel::turn && has_length && 1.0 + g > 0.0 && g != 0.0) {
       robot.wheelbase /= 1.0 + g;

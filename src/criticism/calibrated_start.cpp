@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/calibrated_start.hpp"
 
+#include "calibration/sensor_places.hpp"
 #include "calibration/sought_constants.hpp"
 #include "calibration/wheel_calibration.hpp"
 #include "criticism/refits.hpp"
@@ -58,19 +59,16 @@ std::map<Channel, double> places_off(const WheelCalibration& found, const Robot&
     if (value) result[channel] = sign * (value->value - was);
   };
   for (const CalibratedMounting& one : found.mountings) {
-    const Mountings& mounted = stated.mounted;
+    const Mounting was = stated_place(stated.mounted, one.of);
     if (one.of == "antenna") {
-      const Mounting was = mounted.antenna.value_or(Mounting());
       add(one.x, was.x, Channel::antenna);
       add(one.y, was.y, Channel::antenna_left);
     } else if (one.of == "scanner") {
-      const Mounting was = mounted.scanner.value_or(Mounting());
       add(one.x, was.x, Channel::scanner);
       add(one.y, was.y, Channel::scanner_left);
       add(one.yaw, was.yaw, Channel::scanner_yaw);
     } else {
       const bool sensor = one.of == "sensor";
-      const Mounting was = (sensor ? mounted.sensor : mounted.tracked).value_or(Mounting());
       add(one.x, was.x, Channel::lever);
       add(one.y, was.y, Channel::lever_left);
       add(one.yaw, was.yaw, sensor ? Channel::bearing : Channel::truth_heading,
@@ -118,8 +116,7 @@ void keep_likely(const std::optional<WheelCalibration>& found, const Robot& stat
 std::map<Channel, double> steering_of(const Model& calibrated) {
   std::map<Channel, double> result;
   for (const Effect& one : calibrated.effects) {
-    const bool ours = is_steering(one.channel) || one.channel == Channel::other_axle;
-    if (ours && one.is_constant() && !one.coefficients.empty()) {
+    if (is_of_steered_drive(one.channel) && one.is_constant() && !one.coefficients.empty()) {
       result[one.channel] += one.coefficients.front();
     }
   }
@@ -133,9 +130,9 @@ bool is_far_place(Channel channel, double g) {
   const bool turned = channel == scanner_yaw || channel == bearing || channel == truth_heading;
   const bool place = channel == lever || channel == lever_left || channel == antenna ||
                      channel == antenna_left || channel == scanner || channel == scanner_left;
-  const bool wheel = channel == wheel_left || channel == steer_left;
   return (place && std::abs(g) >= kFarPlace) || (turned && std::abs(g) >= kFarYaw) ||
-         (wheel && std::abs(g) >= kFarWheel) || (channel == steer && std::abs(g) >= kFarAngle) ||
+         (is_wheels_place(channel) && std::abs(g) >= kFarWheel) ||
+         (channel == steer && std::abs(g) >= kFarAngle) ||
          (channel == steer_gain && std::abs(g) >= kGross) ||
          (channel == other_axle && std::abs(g) >= kHalf);
 }

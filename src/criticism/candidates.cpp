@@ -3,8 +3,10 @@
 #include "criticism/candidates.hpp"
 
 #include "criticism/driven_variables.hpp"
+#include "drive/wheel_kinematics.hpp"
 #include "effects/channel_physics.hpp"
 #include "effects/place_patterns.hpp"
+#include "effects/steering.hpp"
 #include "fit/noise_components.hpp"
 #include "recording/variable_names.hpp"
 #include "text/number_text.hpp"
@@ -223,22 +225,21 @@ Candidates of_family(const CatalogueEntry& entry, const Grounds& grounds) {
 /// A wheel beside the middle before a sensor there, where no motion tells which it is.
 double prior_of(Channel channel) {
   constexpr double kBefore = 0.1;
-  return channel == Channel::steer_left || channel == Channel::wheel_left ? kBefore : 0.0;
+  return is_wheels_place(channel) ? kBefore : 0.0;
 }
 
 /// Whether it is of a left and a right wheel that change direction each for itself.
-bool is_of_two_wheels(const CatalogueEntry& entry) {
+bool is_of_sides(const CatalogueEntry& entry) {
   return std::ranges::any_of(entry.pattern,
                              [](std::string_view one) { return one.starts_with("reverses_"); });
 }
 
 Candidates of_catalogue(const Grounds& grounds) {
   Candidates found;
-  const DriveKind drive = grounds.context.robot().drive;
-  const bool two_wheels = drive == DriveKind::differential || drive == DriveKind::skid_steer;
+  const bool sides = has_left_and_right(grounds.context.robot());
   for (const CatalogueEntry& entry : catalogue()) {
     if (!grounds.allow(entry.channel)) continue;
-    if (!two_wheels && is_of_two_wheels(entry)) continue;
+    if (!sides && is_of_sides(entry)) continue;
     Candidate one;
     if (entry.of_covariate()) {
       std::vector<std::string> names(entry.also_of.begin(), entry.also_of.end());

@@ -240,15 +240,6 @@ std::vector<ModelEvidence> models_between(const std::vector<DrivenRecording>& re
   return models;
 }
 
-}  // namespace
-
-ComparisonEvidence evidence_of(const ModelFit& fit, const Comparison& comparison) {
-  return {{comparison, fitted_map(fit), reckoned_errors(*fit.state)},
-          trend_evidence(comparison, *fit.state, ScoreTest(*fit.state))};
-}
-
-namespace {
-
 Eigen::MatrixXd correlation_of(const ModelFit& fit) {
   Eigen::Index count = 0;
   for (const EffectEstimate& one : fit.effects) {
@@ -262,6 +253,11 @@ Eigen::MatrixXd correlation_of(const ModelFit& fit) {
 }
 
 }  // namespace
+
+ComparisonEvidence evidence_of(const ModelFit& fit, const Comparison& comparison) {
+  return {{comparison, fitted_map(fit), reckoned_errors(*fit.state)},
+          trend_evidence(comparison, *fit.state, ScoreTest(*fit.state))};
+}
 
 FitEvidence evidence_of(const std::vector<DrivenRecording>& recordings, const EffectGain& gain,
                         const CompareOptions& options) {

@@ -32,8 +32,7 @@ std::vector<Effect> causes_for(const ModelFit& given, const ScoreTest& tests, bo
                        channel == Channel::difference || channel == Channel::drift;
     const bool moves = channel == Channel::travel || channel == Channel::advance ||
                        channel == Channel::wheels || channel == Channel::sideways;
-    const bool steers = is_steering(channel) || channel == Channel::other_axle;
-    if (!turns && !moves && !steers) continue;
+    if (!turns && !moves && !is_of_steered_drive(channel)) continue;
     if (gyro && channel == Channel::drift) continue;  // its bias is what drifts
     if (moves && !scale) continue;
     if (!tests.is_present(one.effect)) result.push_back(one.effect);

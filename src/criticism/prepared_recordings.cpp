@@ -70,17 +70,18 @@ void judge_rows(PreparedRecordings& prepared, const Model& model) {
        ": errors of sightings last so long in this model (--every 0: all)");
 }
 
-/// s between frames, for there to be enough and no more; 0: all are.
-double pace_of(const std::vector<DrivenRecording>& recordings) {
+/// Frames so far apart that there are enough and no more; returns how far, s, 0: all are left.
+double pace(std::vector<DrivenRecording>& recordings) {
   constexpr double kStep = 0.1;  // s
   constexpr int kMost = 10;
   constexpr std::size_t kMany = 30000;  // fewer are soon judged, and errors that last seen finer
   if (sightings_of(recordings) <= kMany) return 0.0;
-  int steps = 1;
-  while (steps < kMost &&
-         sightings_of(richest_frames(recordings, kStep * steps)) > kEnoughSightings) {
-    ++steps;
-  }
+  std::vector<DrivenRecording> paced;
+  int steps = 0;
+  do {
+    paced = richest_frames(recordings, kStep * ++steps);
+  } while (steps < kMost && sightings_of(paced) > kEnoughSightings);
+  recordings = std::move(paced);
   return kStep * steps;
 }
 
@@ -96,8 +97,7 @@ PreparedRecordings prepare_recordings(std::vector<DrivenRecording> recordings, c
   prepared.fit = fit;
   prepared.recorded = sightings_of(recordings);
   if (!every && has_dense_frames(recordings)) {
-    prepared.pace = pace_of(recordings);
-    if (prepared.pace > 0.0) recordings = richest_frames(recordings, prepared.pace);
+    prepared.pace = pace(recordings);
     prepared.whole = std::make_shared<const std::vector<DrivenRecording>>(std::move(recordings));
     judge_rows(prepared, model);
     return prepared;

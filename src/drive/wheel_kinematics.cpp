@@ -294,8 +294,10 @@ void WheelKinematics::prepare(MotionRows& drive, std::size_t rows) const {
   drive.sideways.assign(!steers_ && !matrix_.row(1).isZero(0.0) ? rows : 0, 0.0);
   drive.wheels.clear();
   for (const std::string& name : robot_.columns) {
-    drive.wheels.push_back({name, steers_ && !drive.wheels.empty(), std::vector<double>(rows, 0.0),
-                            std::vector<std::array<double, 3>>(rows)});
+    const bool steers = steers_ && !drive.wheels.empty();
+    drive.wheels.push_back({name, steers, std::vector<double>(rows, 0.0),
+                            std::vector<std::array<double, 3>>(rows),
+                            std::vector<double>(steers ? rows : 0, 1.0)});
   }
 }
 
@@ -314,7 +316,6 @@ bool WheelKinematics::move(MotionRows& drive, std::size_t row, const SteeringCha
       steered_motion(robot_, drive.wheels[0].reading[row], drive.wheels[1].reading[row], change);
   if (!body.possible) return false;
   take_body(drive, row, body.motion, robot_);
-  drive.wheels[1].gain.resize(drive.wheels[1].reading.size(), 1.0);
   drive.wheels[1].gain[row] = 1.0 + change.gain;
   for (std::size_t k = 0; k < 2; ++k) {
     const Eigen::Vector3d& by = body.by_reading[k];

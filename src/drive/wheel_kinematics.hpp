@@ -16,6 +16,11 @@
 
 namespace trussmap {
 
+/// Of a robot with wheels at its left and at its right that turn as one each.
+[[nodiscard]] inline bool has_left_and_right(const Robot& robot) {
+  return robot.drive == DriveKind::differential || robot.drive == DriveKind::skid_steer;
+}
+
 class WheelKinematics {
  public:
   /// Of any drive but `differential`. Throws std::invalid_argument where the robot has not as many

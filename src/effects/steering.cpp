@@ -42,8 +42,15 @@ bool has_steered_wheel(const MotionRows& drive) {
 }  // namespace
 
 bool is_steering(Channel channel) {
-  return channel == Channel::steer || channel == Channel::steer_gain ||
-         channel == Channel::wheel_left || channel == Channel::steer_left;
+  return channel == Channel::steer || channel == Channel::steer_gain || is_wheels_place(channel);
+}
+
+bool is_wheels_place(Channel channel) {
+  return channel == Channel::wheel_left || channel == Channel::steer_left;
+}
+
+bool is_of_steered_drive(Channel channel) {
+  return is_steering(channel) || channel == Channel::other_axle;
 }
 
 void add_steering(Channel channel, double g, double angle, SteeringChange& change) {

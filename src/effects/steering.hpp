@@ -22,6 +22,10 @@ namespace trussmap {
 
 /// steer, steer_gain, wheel_left or steer_left.
 [[nodiscard]] bool is_steering(Channel channel);
+/// wheel_left or steer_left.
+[[nodiscard]] bool is_wheels_place(Channel channel);
+/// is_steering, or other_axle: of robots that steer alone.
+[[nodiscard]] bool is_of_steered_drive(Channel channel);
 /// What g of one of them adds where this angle [rad] is read.
 void add_steering(Channel channel, double g, double angle, SteeringChange& change);
 /// Whether any effect is of one.

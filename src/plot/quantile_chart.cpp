@@ -97,19 +97,18 @@ Chart histogram_chart(const std::string& id, const std::string& title,
   chart.title = title;
   chart.caption =
       "Every error over its standard deviation, as the model states it, in steps of half a "
-      "standard "
-      "deviation; those beyond 5 are in the outermost. The faint line is what a normal "
-      "distribution "
-      "would show. Wider: more noise than stated, or an effect is missing.";
+      "standard deviation; those beyond 5 are in the outermost. The faint line is what a normal "
+      "distribution would show. Wider: more noise than stated, or an effect is missing.";
   chart.x.title = "error [standard deviations]";
   chart.y.title = "share [%]";
   chart.y.zero = true;
   chart.height = 300.0;
+  if (all < static_cast<double>(kFewest)) return chart;
   ChartLayer normal{LayerKind::line, "as stated", {{""}, {""}}, "faint"};
   ChartLayer outline{LayerKind::line, "", {{""}, {""}}, "1"};
   ChartLayer seen{LayerKind::dots, "seen", {{chart.x.title}, {chart.y.title}}, "1"};
   seen.size = 3.0;
-  for (int k = 0; all >= static_cast<double>(kFewest) && k < kSteps; ++k) {
+  for (int k = 0; k < kSteps; ++k) {
     const double from = kStep * (k - kReach);
     // normal_p_value(x): the share beyond x.
     const double within = normal_p_value(from) - normal_p_value(from + kStep);
@@ -123,7 +122,6 @@ Chart histogram_chart(const std::string& id, const std::string& title,
     seen.columns[0].numbers.push_back(from + 0.5 * kStep);
     seen.columns[1].numbers.push_back(share);
   }
-  if (seen.columns[0].numbers.empty()) return chart;
   chart.layers.push_back(std::move(normal));
   chart.layers.push_back(std::move(outline));
   chart.layers.push_back(std::move(seen));

@@ -81,10 +81,6 @@ ResultRows rows_on(const FitEvidence& evidence) {
   return rows;
 }
 
-}  // namespace
-
-namespace {
-
 /// What the fit cannot tell apart well: coefficients whose estimates move together.
 std::optional<PageTable> correlation_table(const FitEvidence& evidence) {
   constexpr Eigen::Index kMost = 12;

@@ -79,8 +79,8 @@ ChartLayer leg_layer(const std::vector<TriedLeg>& legs, const std::string& name,
 }
 
 /// Routes by what is left: by the legs held out, on one scale for all steps; where none is, by the
-/// wheels alone.
-Chart routes_of(const TriedModel& now, const IsShown& is_shown, double first_rms) {
+/// wheels alone, of which `worst`, m, is the worst of all.
+Chart routes_of(const TriedModel& now, const IsShown& is_shown, double first_rms, double worst) {
   const auto shown = [&is_shown](const auto& legs) {
     auto some = legs;
     std::erase_if(some, [&is_shown](const auto& leg) { return !is_shown(leg.leg); });
@@ -91,17 +91,14 @@ Chart routes_of(const TriedModel& now, const IsShown& is_shown, double first_rms
   const std::vector<RouteError> routes =
       held_out ? held_out_errors(shown(now.diagnosis().held_out.legs), shown(misfits), now.map())
                : route_errors(shown(misfits), now.map());
-  const auto worst = [&] {
-    const std::vector<RouteError> all = route_errors(misfits, now.map());
-    return all.empty() ? 0.0 : all.front().rms;
-  };
   return route_chart("map", "The map, routes by what is left", now.map(), routes,
-                     held_out ? by_held_out_legs(first_rms) : by_wheels_alone(worst()));
+                     held_out ? by_held_out_legs(first_rms) : by_wheels_alone(worst));
 }
 
 Chart map_of(const TriedModel& now, const IsShown& is_shown, bool all, double first_rms) {
   Chart map;
-  if (route_errors(now.comparison().worst, now.map()).empty()) {
+  const std::vector<RouteError> routes = route_errors(now.comparison().worst, now.map());
+  if (routes.empty()) {
     map = truss_chart("map", "The map", now.map(), {}, 1.0);
     if (!all) {
       map.layers.push_back(leg_layer(now.legs(), "chosen", "2", [&is_shown](const TriedLeg& leg) {
@@ -109,7 +106,7 @@ Chart map_of(const TriedModel& now, const IsShown& is_shown, bool all, double fi
       }));
     }
   } else {
-    map = routes_of(now, is_shown, first_rms);
+    map = routes_of(now, is_shown, first_rms, routes.front().rms);
   }
   std::vector<Effect> acting;
   for (const EffectEstimate& one : now.fit().effects) acting.push_back(one.effect);

@@ -3,8 +3,6 @@
 #include "validation/held_out_legs.hpp"
 
 #include "fit/column_builder.hpp"
-#include "geometry/index.hpp"
-#include "recording/time_spans.hpp"
 #include "validation/training.hpp"
 
 #include <algorithm>
@@ -21,9 +19,7 @@ std::set<std::size_t> passed_over(const std::vector<LegSpan>& legs,
                                   const std::vector<std::vector<TimeSpan>>& excluded) {
   std::set<std::size_t> numbers;
   for (const LegSpan& leg : legs) {
-    if (!excluded.empty() && overlaps_any(leg.time, excluded[idx(leg.session)])) {
-      numbers.insert(leg.number);
-    }
+    if (is_excluded(leg, excluded)) numbers.insert(leg.number);
   }
   return numbers;
 }

@@ -62,6 +62,10 @@ void add_place_legs(const DrivenRecording& recording, int session, const Recordi
 
 }  // namespace
 
+bool is_excluded(const LegSpan& leg, const std::vector<std::vector<TimeSpan>>& excluded) {
+  return !excluded.empty() && overlaps_any(leg.time, excluded[idx(leg.session)]);
+}
+
 std::vector<LegSpan> leg_spans(const std::vector<DrivenRecording>& recordings,
                                const RecordingProblem& problem, const LegOptions& options) {
   std::vector<LegSpan> legs;
@@ -87,9 +91,7 @@ std::vector<LegSpan> leg_spans(const FitState& fit, const LegOptions& options) {
     place.emplace(key(fit.problem.measurements[k]), k);
   }
   std::vector<LegSpan> legs = leg_spans(fit.recordings, whole, options);
-  std::erase_if(legs, [&fit](const LegSpan& leg) {
-    return overlaps_any(leg.time, fit.used.left_out[idx(leg.session)]);
-  });
+  std::erase_if(legs, [&fit](const LegSpan& leg) { return is_excluded(leg, fit.used.left_out); });
   for (LegSpan& leg : legs) {
     leg.from = place.at(key(whole.measurements[leg.from]));
     leg.to = place.at(key(whole.measurements[leg.to]));

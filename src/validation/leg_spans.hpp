@@ -23,6 +23,10 @@ struct LegSpan {
   bool held_out = false;
 };
 
+/// Whether a part of it is in times that are not to be used, per session; empty: there are none.
+[[nodiscard]] bool is_excluded(const LegSpan& leg,
+                               const std::vector<std::vector<TimeSpan>>& excluded);
+
 /// Legs of a problem that leaves nothing out, in order.
 [[nodiscard]] std::vector<LegSpan> leg_spans(const std::vector<DrivenRecording>& recordings,
                                              const RecordingProblem& problem,
