@@ -57,8 +57,10 @@ TEST(Page, HostileNamesStayText) {
 }
 
 TEST(Page, ItsFootSaysHowItWasMade) {
-  const Provenance from{"trussmap compare '" + std::string(testing::kHostile) + "'", "9.8.7",
-                        "2031-05-06", {{std::string(testing::kHostile), "0123456789abcdef"}}};
+  const Provenance from{"trussmap compare '" + std::string(testing::kHostile) + "'",
+                        "9.8.7",
+                        "2031-05-06",
+                        {{std::string(testing::kHostile), "0123456789abcdef"}}};
   const std::string html = render_page(with_provenance(Page(page_with("A")), from), kRuntime);
   const std::size_t foot = html.find("<footer>");
   ASSERT_NE(foot, std::string::npos);
