@@ -64,11 +64,13 @@ trussmap_pkgconfig(trussmap "${requires}" "${libs}")
 trussmap_pkgconfig(trussmap-map "${map_requires}" "${map_libs}")
 if(TARGET trussmap_command)
   install(TARGETS trussmap_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  install(FILES docs/trussmap.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/trussmap)
-  # The command says itself what man and shells take.
+  # The command says itself what man, shells and readers of its JSON take.
   if(NOT CMAKE_CROSSCOMPILING)
     install(CODE "
       set(top \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\")
+      file(MAKE_DIRECTORY \"\${top}/${CMAKE_INSTALL_DATADIR}/trussmap\")
+      execute_process(COMMAND $<TARGET_FILE:trussmap_command> schema
+                      OUTPUT_FILE \"\${top}/${CMAKE_INSTALL_DATADIR}/trussmap/trussmap.schema.json\" COMMAND_ERROR_IS_FATAL ANY)
       execute_process(COMMAND $<TARGET_FILE:trussmap_command> manual --out \"\${top}/${CMAKE_INSTALL_MANDIR}/man1\"
                       OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
       foreach(to bash:bash-completion/completions/trussmap zsh:zsh/${TRUSSMAP_ZSH_FOLDER}/_trussmap

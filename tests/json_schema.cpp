@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "json_schema.hpp"
 
-#include "json_file.hpp"
+#include "scratch_folder.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -53,7 +53,7 @@ std::string option_of(const std::vector<std::string>& words, const std::string& 
 }
 
 const json& whole_schema() {
-  static const json schema = read_json(TRUSSMAP_SOURCE_DIR "/docs/trussmap.schema.json");
+  static const json schema = json::parse(run_trussmap("schema").output);
   return schema;
 }
 

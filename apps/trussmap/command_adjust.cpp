@@ -8,6 +8,8 @@
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
+#include "results/json.hpp"
+#include "results/pose_graphs.hpp"
 #include "terminal.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/pose_graph.hpp"
@@ -21,7 +23,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace trussmap::app {
 namespace {
@@ -38,34 +39,6 @@ struct AdjustOptions {
   std::string edge2 = kEdge2ByName;
 };
 
-/// Everything that the JSON file says.
-struct Run {
-  PoseGraphAdjustment result;
-  int poses = 0;
-  int landmarks = 0;
-  std::size_t edges = 0;
-  bool robust = false;
-  nlohmann::ordered_json left_out = nlohmann::ordered_json::array();  ///< edges, by ids
-  double seconds = 0.0;
-};
-
-nlohmann::ordered_json json_of(const Run& run) {
-  const PoseGraphAdjustment& r = run.result;
-  nlohmann::ordered_json out{{"chi2", r.chi2},
-                             {"dof", r.dof},
-                             {"iterations", r.iterations},
-                             {"gradient_norm", r.gradient_norm},
-                             {"poses", run.poses},
-                             {"landmarks", run.landmarks},
-                             {"edges", run.edges},
-                             {"converged", r.converged},
-                             {"start", r.start},
-                             {"seconds", run.seconds},
-                             {"warnings", r.warnings}};
-  if (run.robust) out["left_out"] = run.left_out;
-  return out;
-}
-
 AdjustmentOptions adjustment_options(const AdjustOptions& options, const PoseGraph& graph) {
   const auto has_estimate = [](const GraphVertex& vertex) { return vertex.estimate.has_value(); };
   if (options.start == "file" &&
@@ -79,23 +52,23 @@ AdjustmentOptions adjustment_options(const AdjustOptions& options, const PoseGra
   return result;
 }
 
-Run adjust_graph(const AdjustOptions& options, const PoseGraph& graph) {
+results::AdjustReport adjust_graph(const AdjustOptions& options, const PoseGraph& graph) {
   const AdjustmentOptions how = adjustment_options(options, graph);
-  Run run;
+  results::AdjustReport run;
   run.poses = count_poses(graph);
   run.landmarks = count_points(graph);
   run.edges = graph.edges();
-  run.robust = options.robust;
   const auto begin = std::chrono::steady_clock::now();
   if (options.robust) {
     RobustAdjustment robust = adjust_robustly(graph, {how, options.gate});
     run.result = std::move(robust.adjustment);
+    run.left_out.emplace();
     for (const int k : robust.left_out) {
       const PoseEdge& edge = graph.pose_edges.at(static_cast<std::size_t>(k));
       const auto id_of = [&graph](int vertex) {
         return graph.vertices.at(static_cast<std::size_t>(vertex)).id;
       };
-      run.left_out.push_back({id_of(edge.from), id_of(edge.to)});
+      run.left_out->emplace_back(id_of(edge.from), id_of(edge.to));
     }
   } else {
     run.result = adjust(graph, how);
@@ -125,7 +98,7 @@ void run_adjust(const AdjustOptions& options) {
   const bool small = graph.edges() <= kQuicklyChecked;
   if (small) warn_of_graph_mistakes(graph, options.graph);
   progress.next();
-  const Run run = adjust_graph(options, graph);
+  const results::AdjustReport run = adjust_graph(options, graph);
   if (!small && misfits(run.result)) warn_of_graph_mistakes(graph, options.graph);
   Files files;
   if (!options.out.empty()) {
@@ -134,11 +107,11 @@ void run_adjust(const AdjustOptions& options) {
     }
     files.emplace_back(options.out, format_g2o(graph));
   }
-  if (!options.json.empty()) files.emplace_back(options.json, json_of(run).dump(2) + "\n");
+  if (!options.json.empty()) files.emplace_back(options.json, results::json_text(run));
   files.write();
   progress.end();
   const std::optional<std::size_t> left_out =
-      run.robust ? std::optional(run.left_out.size()) : std::nullopt;
+      run.left_out ? std::optional(run.left_out->size()) : std::nullopt;
   fmt::print("{}", pose_graph_text(graph, run.result, left_out, run.seconds, style_of(stdout)));
 }
 

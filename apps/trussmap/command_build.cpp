@@ -9,6 +9,8 @@
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "recording_warnings.hpp"
+#include "results/json.hpp"
+#include "results/maps.hpp"
 #include "scope_options.hpp"
 #include "store_sessions.hpp"
 #include "terminal.hpp"
@@ -175,7 +177,7 @@ void run_build(const BuildOptions& options) {
     files.emplace_back(options.out, format_map(built.map, options.out, "trussmap build, " + by));
   }
   if (!options.json_file.empty()) {
-    files.emplace_back(options.json_file, build_json(built, method).dump(2) + "\n");
+    files.emplace_back(options.json_file, results::json_text(results::MapReport{&built, method}));
   }
   if (!options.svg.empty()) {
     files.emplace_back(options.svg, map_picture(built, built.paths.empty() ? "Landmark map, " + by

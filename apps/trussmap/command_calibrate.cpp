@@ -4,12 +4,14 @@
 // trussmap calibrate: wheels, wheelbase and wheel noise from recordings with truth, fixes or a
 // survey.
 #include "commands.hpp"
-#include "json_values.hpp"
 #include "model_recordings.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "recording_warnings.hpp"
+#include "results/calibration.hpp"
+#include "results/common.hpp"
+#include "results/json.hpp"
 #include "terminal.hpp"
 #include "trussmap/calibrate.hpp"
 #include "trussmap/channel.hpp"
@@ -25,12 +27,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace trussmap::app {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct CalibrateOptions {
   std::vector<std::string> recordings;
@@ -63,94 +62,6 @@ TestedDrives tested(const std::vector<DrivenRecording>& recordings, const Model&
   return result;
 }
 
-ordered_json json_of(const TestedDrives& test) {
-  ordered_json out = {{"recordings", test.names.size()},
-                      {"end_rms_m", rms_end(test.calibrated)},
-                      {"end_rms_nominal_m", rms_end(test.nominal)},
-                      {"heading_rms_rad_per_m", rms_heading_per_metre(test.calibrated)},
-                      {"heading_rms_nominal_rad_per_m", rms_heading_per_metre(test.nominal)}};
-  for (std::size_t k = 0; k < test.names.size(); ++k) {
-    out["each"].push_back({{"recording", test.names[k]},
-                           {"driven_m", test.nominal[k].driven},
-                           {"end_m", test.calibrated[k].end},
-                           {"end_nominal_m", test.nominal[k].end},
-                           {"heading_rad_per_m", test.calibrated[k].heading_per_metre()},
-                           {"heading_nominal_rad_per_m", test.nominal[k].heading_per_metre()}});
-  }
-  return out;
-}
-
-ordered_json json_of(const CalibrationValidation& held) {
-  const bool judged = held.legs() > 0;
-  return {{"legs", held.legs()},
-          {"held_out", held.scheme == HoldoutScheme::none     ? ordered_json()
-                       : held.scheme == HoldoutScheme::blocks ? "blocks of legs"
-                                                              : "recordings"},
-          {"arrival_rms_m", judged ? ordered_json(held.calibrated.rms()) : ordered_json()},
-          {"arrival_rms_nominal_m", judged ? ordered_json(held.nominal.rms()) : ordered_json()}};
-}
-
-ordered_json json_of(const std::vector<CalibratedMounting>& mountings) {
-  ordered_json out = ordered_json::object();
-  for (const CalibratedMounting& one : mountings) {
-    ordered_json place;
-    for (const auto& [name, value] :
-         {std::pair("x", &one.x), std::pair("y", &one.y), std::pair("yaw", &one.yaw)}) {
-      place[name] = *value ? ordered_json((*value)->value) : ordered_json();
-      place[std::string("sd_") + name] = *value ? ordered_json((*value)->sd) : ordered_json();
-    }
-    out[one.of] = place;
-  }
-  return out;
-}
-
-ordered_json json_of(const WheelCalibration& found, const CalibrationValidation& held,
-                     const std::optional<TestedDrives>& test) {
-  ordered_json out;
-  const auto add = [&out](const char* name, const std::optional<Calibrated>& one) {
-    out[name] = one ? ordered_json(one->value) : ordered_json();
-    out[std::string("sd_") + name] = one ? ordered_json(one->sd) : ordered_json();
-  };
-  add("E_d", found.diameter_ratio);
-  add("E_b", found.wheelbase_ratio);
-  add("E_s", found.scale);
-  add("k_left", found.noise_left);
-  add("k_right", found.noise_right);
-  if (!found.constants.empty()) {
-    ordered_json constants;
-    for (const DriveConstant& one : found.constants) {
-      constants[std::string(name_of(one.channel))] = {{"g", one.g.value}, {"sd", one.g.sd}};
-    }
-    out["drive_constants"] = constants;
-  }
-  out["chi2"] = found.chi2;
-  out["dof"] = found.dof;
-  out["heldout"] = json_of(held);
-  if (test) out["test"] = json_of(*test);
-  if (!found.truth.clocks.empty()) {
-    ordered_json clocks = ordered_json::array();
-    for (const auto& [session, clock] : found.truth.clocks) {
-      clocks.push_back({{"session", session}, {"late_s", clock.late}, {"drift", clock.drift}});
-    }
-    out["truth"] = {{"ahead_m", found.truth.ahead},
-                    {"left_m", found.truth.left},
-                    {"heading_rad", found.truth.heading},
-                    {"clocks", clocks}};
-  }
-  if (!found.fixes.late.empty()) {
-    ordered_json late = ordered_json::array();
-    for (const auto& [session, one] : found.fixes.late) {
-      late.push_back({{"session", session}, {"late_s", one}});
-    }
-    out["fixes"] = {
-        {"ahead_m", found.fixes.ahead}, {"left_m", found.fixes.left}, {"sessions", late}};
-  }
-  if (!found.mountings.empty()) out["mountings"] = json_of(found.mountings);
-  out["settled"] = found.settled;
-  out["undetermined"] = found.undetermined;
-  return out;
-}
-
 void run_calibrate(const CalibrateOptions& options) {
   Progress progress({{"reading", 10}, {"calibrating", 45}, {"predicting held-out legs", 45}});
   progress.next();
@@ -180,9 +91,9 @@ void run_calibrate(const CalibrateOptions& options) {
     files.emplace_back(options.out, format_model(with_wheelbase_in_robot(found.model)));
   }
   if (!options.json.empty()) {
-    ordered_json report = json_of(found, held, test);
-    add_constants(constants, report);
-    files.emplace_back(options.json, report.dump(2) + "\n");
+    const results::CalibrationReport report{&found, &held, &test};
+    files.emplace_back(options.json,
+                       results::json_text(results::WithConstants{report, &constants}));
   }
   if (options.page.wanted()) {
     const Page page = truth_page({found, held.nominal, held.calibrated, calibration_verdict(held)},

@@ -6,6 +6,8 @@
 #include "commands.hpp"
 #include "graph_options.hpp"
 #include "model_recordings.hpp"
+#include "results/checks.hpp"
+#include "results/json.hpp"
 #include "terminal.hpp"
 #include "trussmap/check.hpp"
 #include "trussmap/error.hpp"
@@ -20,12 +22,9 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace trussmap::app {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct CheckCommand {
   std::vector<std::string> inputs;
@@ -35,20 +34,9 @@ struct CheckCommand {
   std::string mend;
 };
 
-std::string json_text(const std::vector<CheckFinding>& findings) {
-  ordered_json list = ordered_json::array();
-  for (const CheckFinding& one : findings) {
-    list.push_back({{"file", one.file},
-                    {"column", one.column},
-                    {"kind", one.kind},
-                    {"evidence", one.evidence},
-                    {"remedy", one.remedy}});
-  }
-  return ordered_json{{"findings", list}}.dump(2) + "\n";
-}
-
 void report(const CheckCommand& options, const std::vector<CheckFinding>& findings) {
-  if (!options.json.empty()) write_files({{options.json, json_text(findings)}});
+  if (!options.json.empty())
+    write_files({{options.json, results::json_text(results::CheckReport{findings})}});
   fmt::print("{}", check_text(findings, style_of(stdout)));
 }
 

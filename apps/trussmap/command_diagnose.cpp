@@ -3,11 +3,12 @@
 //
 // trussmap diagnose: which physical effect is missing from a model.
 #include "commands.hpp"
-#include "json_values.hpp"
 #include "model_recordings.hpp"
-#include "noise_output.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
+#include "results/common.hpp"
+#include "results/criticism.hpp"
+#include "results/json.hpp"
 #include "terminal.hpp"
 #include "tolerance_option.hpp"
 #include "trussmap/diagnose.hpp"
@@ -23,81 +24,12 @@
 namespace trussmap::app {
 namespace {
 
-using nlohmann::ordered_json;
-
 struct DiagnoseCommand {
   ModelRecordingsOptions input;
   std::size_t list = 8;
   PageOptions page;
   std::string tolerance;
 };
-
-ordered_json json_of(const Finding& finding) {
-  const Effect& effect = finding.effect;
-  ordered_json one = effect_json(effect);
-  one["score"] = finding.score;
-  one["dof"] = finding.dof;
-  one["p_value"] = finding.p_value;
-  one["p_adjusted"] = finding.p_adjusted;
-  one["status"] = name_of(finding.status);
-  one["coefficients"] = numbers_or_null(effect.coefficients);
-  one["sd"] = numbers_or_null(finding.sd);
-  one["smallest_detectable"] = numbers_or_null(finding.minimal_detectable);
-  one["heldout"] = metrics_json(finding.held_out);
-  one["log_evidence"] = finding.evidence;
-  one["tried"] = finding.tried;
-  one["implausible"] = finding.implausible;
-  one["indistinguishable_from"] = look_alikes_json(finding.look_alikes);
-  return one;
-}
-
-ordered_json json_of(const Unobservable& unseen) {
-  const Advice advice = advice_on(unseen);
-  ordered_json one = effect_json(unseen.effect);
-  one["why"] = advice.why;
-  one["remedy"] = advice.drive;
-  return one;
-}
-
-ordered_json json_of(const NoiseTest& test) {
-  return {{"law", test.law},           {"score", test.score},
-          {"dof", test.dof},           {"p_adjusted", test.p_adjusted},
-          {"size", test.size},         {"unit", test.unit},
-          {"in_words", in_words(test)}};
-}
-
-ordered_json json_of(const EventTest& event) {
-  return {{"kind", name_of(event.kind)},    {"name", event.name},
-          {"score", event.score},           {"dof", event.dof},
-          {"p_adjusted", event.p_adjusted}, {"in_words", in_words(event)}};
-}
-
-template <typename Item>
-ordered_json list_json(const std::vector<Item>& items) {
-  ordered_json list = ordered_json::array();
-  for (const Item& one : items) list.push_back(json_of(one));
-  return list;
-}
-
-ordered_json json_of(const Diagnosis& result) {
-  return {
-      {"verdict", verdict_of(result)},
-      {"missing", result.missing},
-      {"p_value", result.p_value},
-      {"chi2", result.chi2},
-      {"dof", result.dof},
-      {"coefficients_estimated", result.coefficients},
-      {"heldout", held_out_json(result.held_out)},
-      {"tried", result.tried},
-      {"candidates", list_json(result.findings)},
-      {"noise", list_json(result.noise)},
-      {"noise_estimated", result.under ? noise_json(result.under->noise) : ordered_json(nullptr)},
-      {"outliers", list_json(result.events)},
-      {"advice", in_words(result.lacks)},
-      {"next_drive", in_words(result.next_drive)},
-      {"unobservable", list_json(result.unobservable)},
-      {"warnings", result.warnings}};
-}
 
 void run_diagnose(const DiagnoseCommand& options) {
   std::vector<ProgressStep> steps{
@@ -118,13 +50,9 @@ void run_diagnose(const DiagnoseCommand& options) {
   const std::optional<Tolerance> tolerance = judged(options.tolerance, result.held_out);
   Files files;
   if (!options.input.json.empty()) {
-    ordered_json report = json_of(result);
-    add_constants(constants, report);
-    report["noise_budget"] = budget_json(budget);
-    report["sightings_used"] = sightings_json(result.sightings);
-    report["notes"] = input.notes;
-    add_tolerance(tolerance, report);
-    files.emplace_back(options.input.json, report.dump(2) + "\n");
+    const results::Reported<Diagnosis> report{&result, &budget, &input.notes, tolerance};
+    files.emplace_back(options.input.json,
+                       results::json_text(results::WithConstants{report, &constants}));
   }
   progress.next();
   if (options.page.wanted()) {

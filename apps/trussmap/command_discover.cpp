@@ -3,11 +3,12 @@
 //
 // trussmap discover: diagnose, add and fit for as long as that is justified.
 #include "commands.hpp"
-#include "json_values.hpp"
 #include "model_recordings.hpp"
-#include "noise_output.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
+#include "results/common.hpp"
+#include "results/criticism.hpp"
+#include "results/json.hpp"
 #include "terminal.hpp"
 #include "tolerance_option.hpp"
 #include "trussmap/discover.hpp"
@@ -24,8 +25,6 @@
 namespace trussmap::app {
 namespace {
 
-using nlohmann::ordered_json;
-
 struct DiscoverCommand {
   ModelRecordingsOptions input;
   std::string out;
@@ -33,44 +32,6 @@ struct DiscoverCommand {
   PageOptions page;
   std::string tolerance;
 };
-
-ordered_json optional_json(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
-ordered_json json_of(const DiscoveryStep& step) {
-  ordered_json one = {{"added", nullptr},
-                      {"chi2", step.chi2},
-                      {"dof", step.dof},
-                      {"left_out", step.left_out},
-                      {"heldout", held_out_json(step.held_out)},
-                      {"reckoned_10_s_m", optional_json(step.reckoned_10)},
-                      {"reckoned_30_s_m", optional_json(step.reckoned_30)}};
-  if (step.added) {
-    one["added"] = effect_json(*step.added);
-    one["added"]["coefficients"] = step.added->coefficients;
-    for (const Effect& other : step.together) one["together"].push_back(other.name);
-    one["dropped"] = step.dropped;
-    one["promised"] = {{"chi2_decrease", step.predicted_decrease},
-                       {"arrival_rms_m", step.predicted.arrival_rms}};
-    one["indistinguishable_from"] = look_alikes_json(step.look_alikes);
-  }
-  return one;
-}
-
-ordered_json json_of(const Discovery& result) {
-  ordered_json steps = ordered_json::array();
-  for (const DiscoveryStep& step : result.steps) steps.push_back(json_of(step));
-  ordered_json effects = ordered_json::array();
-  for (const EffectEstimate& one : result.found.effects) effects.push_back(estimate_json(one));
-  return {{"steps", steps},
-          {"stopped", stop_in_words(result)},
-          {"verdict", verdict_of(result)},
-          {"effects", effects},
-          {"noise_estimated",
-           result.last.under ? noise_json(result.last.under->noise) : ordered_json(nullptr)},
-          {"warnings", result.found.warnings}};
-}
 
 /// Tells how far a discovery is: as if one effect were found, and one more whenever there is.
 class Told {
@@ -122,13 +83,9 @@ void run_discover(const DiscoverCommand& options) {
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.found.model));
   if (!options.input.json.empty()) {
-    ordered_json report = json_of(result);
-    add_constants(constants, report);
-    report["noise_budget"] = budget_json(budget);
-    report["sightings_used"] = sightings_json(result.sightings);
-    report["notes"] = input.notes;
-    add_tolerance(tolerance, report);
-    files.emplace_back(options.input.json, report.dump(2) + "\n");
+    const results::Reported<Discovery> report{&result, &budget, &input.notes, tolerance};
+    files.emplace_back(options.input.json,
+                       results::json_text(results::WithConstants{report, &constants}));
   }
   if (options.page.wanted()) {
     const Page page = discovery_page(result, evidence_of(input.recordings, result, how.diagnosis),

@@ -5,6 +5,8 @@
 #include "commands.hpp"
 #include "effect_options.hpp"
 #include "help.hpp"
+#include "results/catalogue.hpp"
+#include "results/json.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/workbench.hpp"
 #include "trussmap/write_files.hpp"
@@ -14,26 +16,15 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 namespace trussmap::app {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct EffectsCommand {
   std::string name;
   std::string json;
   std::string drawing;
 };
-
-/// Of an entry, to be explained.
-Effect effect_of(const CatalogueEntry& entry) {
-  Effect effect;
-  effect.name = entry.name;
-  effect.channel = entry.channel;
-  return effect;
-}
 
 std::vector<const CatalogueEntry*> asked_for(const std::string& name) {
   std::vector<const CatalogueEntry*> entries;
@@ -49,40 +40,17 @@ std::vector<const CatalogueEntry*> asked_for(const std::string& name) {
   return entries;
 }
 
-ordered_json entry_json(const CatalogueEntry& entry) {
-  ordered_json parameters = ordered_json::array();
-  for (const OpenParameter& one : entry.parameters) {
-    parameters.push_back({{"name", one.name}, {"unit", one.unit}, {"usual", one.usual}});
+results::CatalogueReport listed(const std::vector<const CatalogueEntry*>& entries) {
+  results::CatalogueReport report;
+  for (const CatalogueEntry* one : entries) {
+    report.effects.push_back({one, name_with_brackets(*one)});
   }
-  const ChannelFacts& channel = facts_of(entry.channel);
-  const Explanation explained = explanation_of(effect_of(entry));
-  return {{"name", entry.name},
-          {"in_full", name_with_brackets(entry)},
-          {"channel", channel.name},
-          {"acts_on", channel.does_what},
-          {"channel_unit", channel.unit},
-          {"shape", entry.pattern},
-          {"unit", entry.unit},
-          {"does", explained.does},
-          {"look", explained.look},
-          {"drive", explained.drive},
-          {"cause", entry.cause},
-          {"remedy", entry.remedy},
-          {"detectable", entry.detectable},
-          {"column", entry.of_covariate()},
-          {"also_of", entry.also_of},
-          {"parameters", parameters}};
-}
-
-std::string json_text(const std::vector<const CatalogueEntry*>& entries) {
-  ordered_json list = ordered_json::array();
-  for (const CatalogueEntry* entry : entries) list.push_back(entry_json(*entry));
-  return ordered_json{{"effects", list}}.dump(2) + "\n";
+  return report;
 }
 
 std::string entry_text(const CatalogueEntry& entry) {
   const ChannelFacts& channel = facts_of(entry.channel);
-  const Explanation explained = explanation_of(effect_of(entry));
+  const Explanation explained = explanation_of(results::effect_of(entry));
   constexpr std::size_t kWidth = 85, kColumn = 15;
   std::string text = fmt::format(
       "{}\n\n  does         {}\n  look at      {}\n  drive        {}\n", name_with_brackets(entry),
@@ -106,9 +74,9 @@ void run_effects(const EffectsCommand& options) {
     throw UsageError("--drawing draws one effect, expected its NAME");
   }
   NamedContents files;
-  if (!options.json.empty()) files.emplace_back(options.json, json_text(entries));
+  if (!options.json.empty()) files.emplace_back(options.json, results::json_text(listed(entries)));
   if (!options.drawing.empty()) {
-    files.emplace_back(options.drawing, effect_drawing(effect_of(*entries.front())));
+    files.emplace_back(options.drawing, effect_drawing(results::effect_of(*entries.front())));
   }
   write_files(files);
   fmt::print("{}", options.name.empty() ? catalogue_text() : entry_text(*entries.front()));

@@ -4,9 +4,10 @@
 // trussmap explore: a robot explores an unknown mesh (apps/explore), and how good its map becomes.
 #include "commands.hpp"
 #include "explorer.hpp"
-#include "json_values.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
+#include "results/exploration.hpp"
+#include "results/json.hpp"
 #include "scope_options.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/survey_comparison.hpp"
@@ -20,12 +21,9 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace trussmap::app {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct ExploreOptions {
   std::string mesh = "8x8";
@@ -39,38 +37,6 @@ struct ExploreOptions {
   std::string svg;
 };
 
-/// Errors each time the robot has driven as far as all routes are long, and at the end.
-struct Tour {
-  int number = 0;
-  double way = 0.0;  ///< m
-  int landmarks = 0;
-  MapErrors errors;  ///< as the map lies, without a compass aligned
-  MapErrors aligned;
-};
-
-ordered_json tours_json(const std::vector<Tour>& tours) {
-  ordered_json list = ordered_json::array();
-  for (const Tour& tour : tours) {
-    list.push_back({{"tour", tour.number},
-                    {"way_m", tour.way},
-                    {"landmarks", tour.landmarks},
-                    {"stretch_error", tour.errors.stretch},
-                    {"orientation_error_rad", tour.errors.orientation},
-                    {"position_error_m", tour.errors.position.value_or(0.0)},
-                    {"aligned_error_m", tour.aligned.position.value_or(0.0)}});
-  }
-  return list;
-}
-
-ordered_json alarms_json(const std::vector<explore::Alarm>& alarms) {
-  ordered_json list = ordered_json::array();
-  for (const explore::Alarm& alarm : alarms) {
-    list.push_back({{"leg", alarm.legs}, {"since_leg", alarm.found.leg}});
-    list.back().update(constant_json(alarm.found.effect, alarm.found.sd));
-  }
-  return list;
-}
-
 void print_alarms(const std::vector<explore::Alarm>& alarms) {
   for (const explore::Alarm& alarm : alarms) {
     fmt::print("after {} legs: {}, since leg {}; the map was made anew with that\n", alarm.legs,
@@ -78,13 +44,13 @@ void print_alarms(const std::vector<explore::Alarm>& alarms) {
   }
 }
 
-void print_tours(const std::vector<Tour>& tours, Laid laid) {
+void print_tours(const std::vector<results::ExploredTour>& tours, Laid laid) {
   const bool both = laid == Laid::as_it_is;
   fmt::print("\n  errors{} each time the way is as long as all routes together\n",
              both ? "" : " after the best rotation and translation,");
   fmt::print("  tour     way [m]  landmarks  position [m]{}   stretch  orientation [rad]\n",
              both ? "  aligned [m]" : "");
-  for (const Tour& tour : tours) {
+  for (const results::ExploredTour& tour : tours) {
     const bool last = &tour == &tours.back();
     fmt::print("  {:>4}  {:>10.0f}  {:>9}  {:>12.4f}", last ? "end" : std::to_string(tour.number),
                tour.way, tour.landmarks, tour.errors.position.value_or(0.0));
@@ -112,7 +78,7 @@ void run_explore(ExploreOptions options) {
   const LandmarkPositions truth = positions_of(world.plan());
   const Laid laid = options.world.compass ? Laid::as_it_is : Laid::aligned;
   const double all_routes = world.length_of_all_routes();
-  std::vector<Tour> tours;
+  std::vector<results::ExploredTour> tours;
   std::vector<ExplorationFrame> frames;
   int legs = 0;
   const auto note = [&] {
@@ -135,15 +101,12 @@ void run_explore(ExploreOptions options) {
   const LandmarkGraph map = robot.map().map();
   Files files;
   if (!options.json_file.empty()) {
-    const ordered_json result = {{"legs", legs},
-                                 {"way_m", world.way_driven()},
-                                 {"landmarks", world.plan().landmarks()},
-                                 {"found", map.landmarks()},
-                                 {"routes", map.routes()},
-                                 {"aligned", laid == Laid::aligned},
-                                 {"alarms", alarms_json(robot.alarms())},
-                                 {"tours", tours_json(tours)}};
-    files.emplace_back(options.json_file, result.dump(2) + "\n");
+    std::vector<results::ExploreAlarm> alarms;
+    for (const explore::Alarm& one : robot.alarms()) alarms.push_back({one.legs, one.found});
+    files.emplace_back(options.json_file,
+                       results::json_text(results::ExploreReport{
+                           legs, world.way_driven(), world.plan().landmarks(), map.landmarks(),
+                           map.routes(), laid == Laid::aligned, std::move(alarms), tours}));
   }
   const std::string subject = fmt::format("{} mesh, seed {}", options.mesh, options.world.seed);
   if (!options.svg.empty()) {

@@ -3,11 +3,12 @@
 //
 // trussmap fit: the coefficients of a model's effects.
 #include "commands.hpp"
-#include "json_values.hpp"
 #include "model_recordings.hpp"
-#include "noise_output.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
+#include "results/common.hpp"
+#include "results/criticism.hpp"
+#include "results/json.hpp"
 #include "terminal.hpp"
 #include "tolerance_option.hpp"
 #include "trussmap/compare.hpp"
@@ -24,8 +25,6 @@
 
 namespace trussmap::app {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct FitCommand {
   ModelRecordingsOptions input;
@@ -49,34 +48,6 @@ EffectGain fit_both(const ModelRecordings& input, const Model& model, const FitC
   const ModelFit after = fit_model(input.recordings, model, how);
   progress.next();
   return gain_of_effects(input.recordings, before, after, options.input.legs);
-}
-
-std::vector<std::string> unfitted_words(const EffectEstimate& estimate) {
-  std::vector<std::string> lines;
-  for (const UnfittedCoefficient& one : estimate.not_fitted) {
-    lines.push_back(in_words(estimate, one));
-  }
-  return lines;
-}
-
-ordered_json json_of(const EffectGain& result) {
-  ordered_json effects = ordered_json::array();
-  for (const EffectEstimate& one : result.with.effects) {
-    effects.push_back(estimate_json(one));
-    effects.back()["not_fitted"] = unfitted_words(one);
-  }
-  const ModelFit& after = result.with;
-  return {{"chi2", after.chi2},
-          {"dof", after.dof},
-          {"p_value", after.p_value},
-          {"effects", effects},
-          {"heldout", held_out_json(result.held_out_with)},
-          {"without_effects",
-           {{"chi2", result.without.chi2},
-            {"dof", result.without.dof},
-            {"heldout", held_out_json(result.held_out_without)}}},
-          {"predicted_decrease", result.predicted_decrease},
-          {"warnings", after.warnings}};
 }
 
 void run_fit(const FitCommand& options) {
@@ -107,12 +78,9 @@ void run_fit(const FitCommand& options) {
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.with.model));
   if (!options.input.json.empty()) {
-    ordered_json report = json_of(result);
-    add_constants(constants, report);
-    if (noise) report["noise"] = noise_json(*noise);
-    report["notes"] = input.notes;
-    add_tolerance(tolerance, report);
-    files.emplace_back(options.input.json, report.dump(2) + "\n");
+    const results::FitReport report{&result, &noise, &input.notes, tolerance};
+    files.emplace_back(options.input.json,
+                       results::json_text(results::WithConstants{report, &constants}));
   }
   progress.next();
   if (options.page.wanted()) {

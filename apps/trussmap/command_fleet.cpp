@@ -3,9 +3,10 @@
 //
 // trussmap fleet: what many robots have in common, and which differ.
 #include "commands.hpp"
-#include "json_values.hpp"
 #include "model_recordings.hpp"
 #include "page_runtime.hpp"
+#include "results/fleet.hpp"
+#include "results/json.hpp"
 #include "terminal.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/fleet.hpp"
@@ -23,8 +24,6 @@
 
 namespace trussmap::app {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct AddCommand {
   std::string store;
@@ -91,90 +90,10 @@ void run_merge(const MergeCommand& options) {
              rows == 1 ? "day of a robot" : "days of robots");
 }
 
-ordered_json json_of(const FleetRobot& one) {
-  return {{"robot", one.robot},
-          {"days", one.days},
-          {"value", one.value},
-          {"sd", one.sd},
-          {"shrunken", one.shrunken},
-          {"sd_shrunken", one.shrunken_sd},
-          {"differs", one.differs},
-          {"p_differs", one.p_differs},
-          {"drifts", one.drifts},
-          {"slope_per_day", one.has_slope ? ordered_json(one.slope) : ordered_json(nullptr)},
-          {"sd_slope_per_day", one.has_slope ? ordered_json(one.slope_sd) : ordered_json(nullptr)},
-          {"p_drifts", one.p_drifts}};
-}
-
-ordered_json json_of(const FleetCoefficient& one) {
-  ordered_json result{
-      {"shape", one.shape},     {"robots", one.robots},       {"mean", one.mean},
-      {"sd", one.sd},           {"p_common", one.p_common},   {"common", one.common},
-      {"tau", one.tau},         {"p_tau", one.p_tau},         {"Q", one.Q},
-      {"Q_dof", one.Q_dof},     {"slope_per_day", one.slope}, {"sd_slope_per_day", one.slope_sd},
-      {"p_slope", one.p_slope}, {"all_drift", one.all_drift}};
-  ordered_json keys = ordered_json::array();
-  for (const FleetKey& key : one.goes_with) {
-    ordered_json groups = ordered_json::array();
-    for (const FleetGroup& group : key.groups) {
-      groups.push_back({{"value", group.value},
-                        {"robots", group.robots},
-                        {"mean", group.mean},
-                        {"sd", group.sd},
-                        {"p_value", group.p_value}});
-    }
-    keys.push_back({{"key", key.key},
-                    {"p_adjusted", key.p_adjusted},
-                    {"groups", groups},
-                    {"same_as", key.same_as}});
-  }
-  result["goes_with"] = keys;
-  ordered_json robots = ordered_json::array();
-  for (const FleetRobot& robot : one.members) robots.push_back(json_of(robot));
-  result["each"] = robots;
-  return result;
-}
-
-ordered_json json_of(const FleetReport& report) {
-  ordered_json result{{"robots", report.robots}, {"days", report.days},   {"chi2", report.chi2},
-                      {"dof", report.dof},       {"level", report.level}, {"keys", report.keys}};
-  ordered_json findings = ordered_json::array();
-  for (const FleetFinding& one : report.findings) {
-    ordered_json coefficients = ordered_json::array();
-    for (const FleetCoefficient& each : one.coefficients) coefficients.push_back(json_of(each));
-    ordered_json alike = ordered_json::array();
-    for (const FleetLookAlike& rival : one.look_alikes) {
-      alike.push_back({{"effect", rival.effect}, {"cosine", rival.cosine}});
-    }
-    findings.push_back({{"effect", one.effect},
-                        {"channel", one.channel},
-                        {"of_model", one.of_model},
-                        {"p_adjusted", one.p_adjusted},
-                        {"coefficients", coefficients},
-                        {"indistinguishable_from", alike}});
-  }
-  result["findings"] = findings;
-  ordered_json tests = ordered_json::array();
-  for (const PooledTest& one : report.tests) {
-    tests.push_back({{"effect", one.effect},
-                     {"channel", one.channel},
-                     {"shape", one.shape},
-                     {"score", one.score},
-                     {"dof", one.dof},
-                     {"p_value", one.p_value},
-                     {"coefficients", numbers_or_null(one.coefficients)},
-                     {"sd", numbers_or_null(one.sd)}});
-  }
-  result["pooled_tests"] = tests;
-  result["heldout_rms_m"] = report.held_out_rms;
-  result["notes"] = report.notes;
-  return result;
-}
-
 void run_report(const ReportCommand& options) {
   const FleetReport report = fleet_report(read_fleet(options.store), options.level);
   Files files;
-  if (!options.json.empty()) files.emplace_back(options.json, json_of(report).dump(2) + "\n");
+  if (!options.json.empty()) files.emplace_back(options.json, results::json_text(report));
   if (options.page.wanted()) add_page(files, fleet_page(report, options.store), options.page);
   files.write();
   const std::vector<std::string> lines = in_words(report);

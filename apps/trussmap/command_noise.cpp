@@ -3,8 +3,9 @@
 //
 // trussmap noise: how noisy each wheel is, from one path driven many times.
 #include "commands.hpp"
-#include "json_values.hpp"
 #include "option_checks.hpp"
+#include "results/experiments.hpp"
+#include "results/json.hpp"
 #include "tape_options.hpp"
 #include "terminal.hpp"
 #include "trussmap/model_file.hpp"
@@ -25,12 +26,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace trussmap::app {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct NoiseOptions {
   std::string file;
@@ -92,63 +90,6 @@ NoiseAnalysis analyse(const NoiseOptions& options, const Model& model) {
   return analyse_wheel_noise(std::move(errors), experiment, stated);
 }
 
-ordered_json stated_json(const StatedNoise& stated) {
-  ordered_json within = ordered_json::array();
-  for (const SigmaCount& count : stated.counts) {
-    within.push_back({{"coordinates", count.coordinates},
-                      {"runs", count.runs},
-                      {"inside_1_2_3_sigma", count.inside},
-                      {"expected_1_2_3_sigma", count.expected}});
-  }
-  return {{"k_left", stated.left},
-          {"k_right", stated.right},
-          {"p_value", stated.p_value},
-          {"within", within}};
-}
-
-ordered_json constants_json(const NoiseEstimate& e) {
-  return {{"k_left", e.left.k},
-          {"k_right", e.right.k},
-          {"sd_k_left", number_or_null(e.left.standard_error)},
-          {"sd_k_right", number_or_null(e.right.standard_error)},
-          {"upper95_k_left", e.left.upper_limit},
-          {"upper95_k_right", e.right.upper_limit},
-          {"k_left_squared", e.squared[0]},
-          {"k_right_squared", e.squared[1]},
-          {"sd_k_left_squared", std::sqrt(e.squared_covariance(0, 0))},
-          {"sd_k_right_squared", std::sqrt(e.squared_covariance(1, 1))}};
-}
-
-/// The estimates in use; both kinds under `first_order` and `exact`.
-ordered_json json_of(const NoiseAnalysis& result, const NoiseOptions& options) {
-  const NoiseEstimate& e = result.estimate;
-  ordered_json out = constants_json(e);
-  out["runs"] = e.runs;
-  out["first_order"] = constants_json(result.first_order);
-  out["exact"] = constants_json(result.exact);
-  ordered_json ellipses = ordered_json::array();
-  for (const EllipseCount& ellipse : result.fit.ellipses) {
-    ellipses.push_back({{"coordinates", ellipse.coordinates},
-                        {"inside", ellipse.inside},
-                        {"runs", ellipse.runs},
-                        {"p_value", ellipse.p_value}});
-  }
-  out.update({{"path", options.path},
-              {"wheelbase_m", result.experiment.wheelbase},
-              {"mean", {e.mean[0], e.mean[1], e.mean[2]}},
-              {"mean_p_value", number_or_null(e.mean_p_value)},
-              {"mean_subtracted", result.experiment.subtract_mean},
-              {"fit",
-               {{"good", result.fit.good},
-                {"bends", result.fit.nonlinear},
-                {"distance_p_value", number_or_null(result.fit.distance_p_value)},
-                {"shape_p_value", number_or_null(result.fit.shape_p_value)},
-                {"ellipses", ellipses}}},
-              {"warnings", result.doubts}});
-  if (result.stated) out["stated"] = stated_json(*result.stated);
-  return out;
-}
-
 void run_noise(const NoiseOptions& options) {
   Model model = starting_model(options.tape);
   const NoiseAnalysis result = analyse(options, model);
@@ -159,7 +100,8 @@ void run_noise(const NoiseOptions& options) {
     files.emplace_back(options.tape.out, format_model(model));
   }
   if (!options.tape.json.empty()) {
-    files.emplace_back(options.tape.json, json_of(result, options).dump(2) + "\n");
+    files.emplace_back(options.tape.json,
+                       results::json_text(results::NoiseReport{&result, options.path}));
   }
   if (!options.tape.page.plots.empty()) {
     files.add_plot(options.tape.page.plots, "noise.svg",

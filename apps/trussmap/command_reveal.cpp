@@ -4,8 +4,9 @@
 // trussmap reveal: what simulate --hide has hidden, and how near a model comes to it.
 #include "commands.hpp"
 #include "effect_options.hpp"
-#include "json_values.hpp"
 #include "model_recordings.hpp"
+#include "results/json.hpp"
+#include "results/simulation.hpp"
 #include "sealed_answer.hpp"
 #include "terminal.hpp"
 #include "trussmap/error.hpp"
@@ -24,8 +25,6 @@
 
 namespace trussmap::app {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct RevealOptions {
   std::string folder;
@@ -64,38 +63,19 @@ Estimated estimated(const RevealOptions& options) {
   return result;
 }
 
-ordered_json json_of(const AnswerScore& score) {
-  ordered_json out = {{"found", score.found},
-                      {"missed", score.missed},
-                      {"false", score.false_alarms},
-                      {"effects", ordered_json::array()}};
-  for (const ScoredEffect& row : score.effects) {
-    ordered_json one = effect_json(row.truth ? *row.truth : *row.estimate);
-    one["outcome"] = row.outcome == ScoredEffect::Outcome::found    ? "found"
-                     : row.outcome == ScoredEffect::Outcome::missed ? "missed"
-                                                                    : "false";
-    one["truth"] = row.truth ? ordered_json(row.truth->coefficients) : ordered_json();
-    one["estimate"] = row.estimate ? ordered_json(row.estimate->coefficients) : ordered_json();
-    one["sd"] = numbers_or_null(row.sd);
-    one["z"] = numbers_or_null(row.z);
-    out["effects"].push_back(std::move(one));
-  }
-  return out;
-}
-
 void run_reveal(const RevealOptions& options) {
-  ordered_json answer = opened(options.folder);
+  const nlohmann::ordered_json answer = opened(options.folder);
   const std::vector<Effect> truth = effects_from(answer.at("effects"));
+  results::Revealed revealed{answer.at("seed").get<std::uint64_t>(), &truth};
   std::string text = fmt::format("revealed: what is hidden in {}\n\n{}", options.folder,
                                  effects_text(truth, style_of(stdout)));
   if (!options.model.empty()) {
     const Estimated model = estimated(options);
-    const AnswerScore score = score_answer(truth, model.effects, model.sd);
-    answer["score"] = json_of(score);
-    text = score_text(score, style_of(stdout));
+    revealed.score = score_answer(truth, model.effects, model.sd);
+    text = score_text(*revealed.score, style_of(stdout));
     if (!model.note.empty()) text += "\n" + notes_text({model.note});
   }
-  if (!options.json.empty()) write_file(options.json, answer.dump(2) + "\n");
+  if (!options.json.empty()) write_file(options.json, results::json_text(revealed));
   fmt::print("{}", text);
 }
 

@@ -4,6 +4,8 @@
 // trussmap simulate: a recording of a wheeled robot on a mesh, with its nominal model.
 #include "call_again.hpp"
 #include "commands.hpp"
+#include "results/json.hpp"
+#include "results/simulation.hpp"
 #include "sealed_answer.hpp"
 #include "simulate_options.hpp"
 #include "terminal.hpp"
@@ -22,7 +24,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace trussmap::app {
 namespace {
@@ -47,8 +48,8 @@ SimulatedRecording simulated(const SimulateOptions& options) {
 FolderOfFiles folder_of(const SimulateOptions& options, const SimulatedRecording& simulated) {
   NamedTexts beside = {{"model.toml", format_model(simulated.model)}};
   if (options.hide) {
-    beside.emplace_back(kSealedName, sealed({{"seed", options.seed},
-                                             {"effects", effects_json(simulated.effects)}}));
+    beside.emplace_back(
+        kSealedName, sealed(results::json_of(results::Revealed{options.seed, &simulated.effects})));
   }
   FolderOfFiles folder =
       recording_folder(options.out, simulated.drive.recording, "", std::move(beside));
@@ -56,37 +57,13 @@ FolderOfFiles folder_of(const SimulateOptions& options, const SimulatedRecording
   return folder;
 }
 
-nlohmann::json summary(const SimulateOptions& options, const SimulatedRecording& simulated) {
-  const Mesh& mesh = simulated.mesh;
-  const SimulatedDrive& drive = simulated.drive;
-  nlohmann::json results = {{"recording", options.out},
-                            {"mesh", options.mesh},
-                            {"drive", options.drive},
-                            {"walk", options.walk},
-                            {"tours", options.tours},
-                            {"seed", options.seed},
-                            {"landmarks", mesh.landmarks()},
-                            {"routes", mesh.routes.size()},
-                            {"legs", drive.motion.stops.size() - 1},
-                            {"rows", drive.motion.rows.size()},
-                            {"sightings", drive.recording.sightings.size()},
-                            {"fixes", drive.recording.fixes.size()},
-                            {"loops", drive.recording.loops.size()},
-                            {"length_m", simulated.length()},
-                            {"duration_s", drive.motion.rows.back().t},
-                            {"compass", drive.recording.drive.has_compass()},
-                            {"gyro", drive.recording.drive.has_gyro()},
-                            {"surveyed", drive.recording.survey.size()},
-                            {"rough", rough_names(rough_of(options))}};
-  if (!options.hide) results["effects"] = effects_json(simulated.effects);
-  return results;
-}
-
 void run_simulate(const SimulateOptions& options) {
   const SimulatedRecording made = simulated(options);
   NamedContents files;
   if (!options.json.empty()) {
-    files.emplace_back(options.json, summary(options, made).dump(2) + "\n");
+    files.emplace_back(options.json,
+                       results::json_text(results::SimulationReport{
+                           &options, &made, options.out, rough_names(rough_of(options))}));
   }
   write_files(files, {folder_of(options, made)});
   fmt::print("{}", simulation_text(made, options, options.out, style_of(stdout)));

@@ -3,8 +3,9 @@
 //
 // trussmap tape: wheels, wheelbase and gyro from straight runs, turns on the spot and rests.
 #include "commands.hpp"
-#include "json_values.hpp"
 #include "option_checks.hpp"
+#include "results/experiments.hpp"
+#include "results/json.hpp"
 #include "tape_options.hpp"
 #include "terminal.hpp"
 #include "trussmap/model_file.hpp"
@@ -20,12 +21,9 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace trussmap::app {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct TapeCommandOptions {
   std::string file;
@@ -95,36 +93,6 @@ std::vector<TapedRun> rehearsed_runs(const TapeCommandOptions& options, double w
   return runs;
 }
 
-ordered_json json_of(const TapeCalibration& found, const std::vector<TapedConstant>& constants) {
-  ordered_json out = {{"verdict", name_of(tape_verdict(found))}};
-  const auto add = [&out](const std::string& name, const std::optional<Estimate>& one) {
-    out[name] = one ? ordered_json(one->value) : ordered_json();
-    out["sd_" + name] = one && one->dof > 0.0 ? ordered_json(one->standard_error) : ordered_json();
-  };
-  add("E_s", found.scale);
-  add("E_b", found.wheelbase_ratio);
-  add("E_d", found.diameter_ratio);
-  add("turn_factor", found.turn_factor);
-  add("gyro_scale", found.gyro_scale);
-  add("gyro_bias_rad_per_s", found.gyro_bias);
-  out["class"] = found.wheelbase_ratio ? ordered_json("wheelbase") : ordered_json();
-  out["looks_the_same"] = found.look_alikes;
-  out["runs"] = {{"straight", found.straight_runs}, {"spin", found.turns}, {"rest", found.rests}};
-  out["constants"] = ordered_json::array();
-  for (const TapedConstant& one : constants) {
-    out["constants"].push_back(
-        {{"name", one.name},
-         {"old", one.before},
-         {"new", one.now.value},
-         {"sd", one.now.dof > 0.0 ? ordered_json(one.now.standard_error) : ordered_json()},
-         {"unit", one.unit}});
-  }
-  out["undetermined"] = found.undetermined;
-  out["notes"] = found.notes;
-  out["warnings"] = found.doubts;
-  return out;
-}
-
 void run_tape(const TapeCommandOptions& options) {
   Model model = starting_model(options.tape);
   GeometryErrors in_force;
@@ -145,7 +113,8 @@ void run_tape(const TapeCommandOptions& options) {
   Files files;
   if (!options.tape.out.empty()) files.emplace_back(options.tape.out, format_model(model));
   if (!options.tape.json.empty()) {
-    files.emplace_back(options.tape.json, json_of(found, constants).dump(2) + "\n");
+    files.emplace_back(options.tape.json,
+                       results::json_text(results::TapeReport{&found, &constants}));
   }
   if (!options.tape.write.empty()) {
     files.emplace_back(options.tape.write, format_taped_runs(runs));

@@ -3,8 +3,10 @@
 //
 // trussmap umbmark: wheel diameters and wheelbase from squares driven both ways.
 #include "commands.hpp"
-#include "json_values.hpp"
 #include "option_checks.hpp"
+#include "results/common.hpp"
+#include "results/experiments.hpp"
+#include "results/json.hpp"
 #include "tape_options.hpp"
 #include "terminal.hpp"
 #include "trussmap/model_file.hpp"
@@ -13,7 +15,6 @@
 #include "trussmap/simulation.hpp"
 #include "trussmap/texts.hpp"
 #include "trussmap/umbmark.hpp"
-#include "umbmark_output.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,8 +29,6 @@ namespace trussmap::app {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
-
 struct UmbmarkOptions {
   std::vector<std::string> files;
   double side = 4.0;  // m
@@ -194,9 +193,9 @@ void run_umbmark(const UmbmarkOptions& options) {
     files.emplace_back(options.tape.out, format_model(with_geometry(model, use.errors)));
   }
   if (!options.tape.json.empty()) {
-    ordered_json report = umbmark_json(rounds, method_of(options), alone);
-    add_constants(constants, report);
-    files.emplace_back(options.tape.json, report.dump(2) + "\n");
+    const results::SquareReport report{&rounds, method_of(options), &alone};
+    files.emplace_back(options.tape.json,
+                       results::json_text(results::WithConstants{report, &constants}));
   }
   if (!options.tape.page.plots.empty()) {
     std::vector<SquareRuns> runs;

@@ -4,9 +4,10 @@
 // trussmap watch: a recording leg by leg through the monitor that a robot has on board.
 #include "command_line.hpp"
 #include "commands.hpp"
-#include "json_values.hpp"
 #include "model_recordings.hpp"
 #include "option_checks.hpp"
+#include "results/json.hpp"
+#include "results/watch.hpp"
 #include "terminal.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
@@ -19,12 +20,9 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace trussmap::app {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct WatchCommand {
   std::string recording;
@@ -33,42 +31,6 @@ struct WatchCommand {
   std::vector<std::string> without;
   WatchOptions how;
 };
-
-ordered_json found_json(const FoundEffect& found) {
-  ordered_json alike = ordered_json::array();
-  for (const MonitorLookAlike& one : found.look_alikes) {
-    alike.push_back({{"effect", one.name}, {"cosine", one.cosine}, {"share", one.share}});
-  }
-  ordered_json json = constant_json(found.effect, found.sd);
-  json.update({{"share", found.share},
-               {"leg", found.leg},
-               {"earliest_leg", found.earliest},
-               {"latest_leg", found.latest},
-               {"indistinguishable_from", alike}});
-  return json;
-}
-
-ordered_json json_of(const Watch& result, double rate) {
-  ordered_json legs = ordered_json::array();
-  for (const WatchedLeg& one : result.legs) {
-    legs.push_back({{"leg", one.leg}, {"t", one.t}, {"end", one.end}, {"evidence", one.evidence}});
-  }
-  ordered_json json = {{"verdict", result.alarm ? "alarm" : "model held"},
-                       {"legs", result.last.legs},
-                       {"hours", result.last.hours},
-                       {"evidence", result.last.evidence},
-                       {"false_alarms_per_hour", rate}};
-  if (result.alarm) {
-    json["alarm"] = {{"leg", result.alarm->legs},
-                     {"t", result.alarm_t},
-                     {"found", found_json(*result.alarm->found)}};
-    json["since_t"] = result.since_t;
-  }
-  if (result.found) json["found"] = found_json(*result.found);
-  json["passed_over"] = result.passed_over;
-  json["each_leg"] = std::move(legs);
-  return json;
-}
 
 bool leaves_out(const WatchCommand& options, const std::string& what) {
   return std::find(options.without.begin(), options.without.end(), what) != options.without.end();
@@ -91,7 +53,7 @@ void run_watch(const WatchCommand& options) {
   const Watch result = watched();
   const double rate = options.how.monitor.false_alarms_per_hour;
   if (!options.json.empty()) {
-    write_files({{options.json, json_of(result, rate).dump(2) + "\n"}});
+    write_files({{options.json, results::json_text(results::WatchReport{&result, rate})}});
   }
   fmt::print("{}", watch_text(result, rate, style_of(stdout)));
   if (result.passed_over > 0) {

@@ -30,6 +30,7 @@ void setup_manual(const Command& app, const CLI::App& whole);
 void setup_merge(const Command& app);
 void setup_noise(const Command& app);
 void setup_reveal(const Command& app);
+void setup_schema(const Command& app);
 void setup_serve(const Command& app);
 void setup_simulate(const Command& app);
 void setup_tape(const Command& app);

@@ -3,6 +3,7 @@
 #include "distributed_adjust.hpp"
 
 #include "page_runtime.hpp"
+#include "results/json.hpp"
 #include "team.hpp"
 #include "terminal.hpp"
 #include "trussmap/distributed.hpp"
@@ -10,7 +11,6 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace trussmap::app {
 namespace {
@@ -44,25 +44,6 @@ std::string table(const Run& run, const std::string& solver) {
   return text;
 }
 
-nlohmann::ordered_json json_of(const Run& run, const std::string& solver) {
-  const DistributedAdjustment& r = run.result;
-  return {{"chi2", r.chi2},
-          {"dof", r.dof},
-          {"iterations", r.iterations},
-          {"residual", r.residual},
-          {"landmarks", r.landmarks},
-          {"edges", r.routes},
-          {"converged", r.converged},
-          {"solver", solver},
-          {"processes", run.processes},
-          {"complexity", r.complexity},
-          {"seconds",
-           {{"reading", r.seconds_reading},
-            {"preparing", r.seconds_preparing},
-            {"solving", r.seconds_solving},
-            {"writing", r.seconds_writing}}}};
-}
-
 }  // namespace
 
 void run_distributed_adjust(const DistributedAdjustOptions& options) {
@@ -78,7 +59,7 @@ void run_distributed_adjust(const DistributedAdjustOptions& options) {
   if (!first) return;
   Files files;
   if (!options.json.empty()) {
-    files.emplace_back(options.json, json_of(run, options.solver).dump(2) + "\n");
+    files.emplace_back(options.json, results::json_text(run));
   }
   files.write();
   fmt::print("{}", table(run, options.solver));

@@ -111,17 +111,6 @@ std::string catalogue_text() {
   return text;
 }
 
-nlohmann::ordered_json effects_json(const std::vector<Effect>& effects) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const Effect& effect : effects) {
-    list.push_back({{"name", effect.name},
-                    {"channel", name_of(effect.channel)},
-                    {"shape", texts_of(effect.shape)},
-                    {"coefficients", effect.coefficients}});
-  }
-  return list;
-}
-
 std::vector<Effect> effects_from(const nlohmann::ordered_json& list) {
   std::vector<Effect> effects;
   for (const auto& one : list) {

@@ -34,7 +34,6 @@ void add_effect_options(const Command& command, EffectOptions& options);
 [[nodiscard]] std::string catalogue_text();
 
 /// [{"name", "channel", "shape", "coefficients"}].
-[[nodiscard]] nlohmann::ordered_json effects_json(const std::vector<Effect>& effects);
 
 /// The same read back.
 [[nodiscard]] std::vector<Effect> effects_from(const nlohmann::ordered_json& list);

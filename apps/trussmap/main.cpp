@@ -128,6 +128,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_merge(commands);
   trussmap::app::setup_noise(commands);
   trussmap::app::setup_reveal(commands);
+  trussmap::app::setup_schema(commands);
   trussmap::app::setup_serve(commands);
   trussmap::app::setup_simulate(commands);
   trussmap::app::setup_tape(commands);

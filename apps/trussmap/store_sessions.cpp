@@ -6,6 +6,8 @@
 #include "command_line.hpp"
 #include "model_recordings.hpp"
 #include "recording_warnings.hpp"
+#include "results/json.hpp"
+#include "results/maps.hpp"
 #include "terminal.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/map_files.hpp"
@@ -21,12 +23,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace trussmap::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kAxes = "axes";  // a note of the store: in which frame its map is
 
@@ -106,18 +105,17 @@ void add_sessions(const StoreSessions& options) {
   const std::vector<DrivenRecording> recordings = with_wheels(read, model.robot);
   warn_of_mistakes(read, model, options.model);
   MapStore store = opened(options);
-  Json sessions = Json::array();
+  std::vector<std::unique_ptr<const BuiltMap>> built;
+  std::vector<results::AddedSession> sessions;
   for (const DrivenRecording& recording : recordings) {
     const std::string key = fingerprint(recording);
     if (store.has_session(key)) {
       fmt::print("{}: is in the store already, nothing added\n", recording.name);
       continue;
     }
-    const BuiltMap built = added(store, key, recording, model, options);
-    print_session(recording, built);
-    Json session = build_json(built, option_of(built.method));
-    session["recording"] = recording.name;
-    sessions.push_back(std::move(session));
+    built.push_back(std::make_unique<const BuiltMap>(added(store, key, recording, model, options)));
+    print_session(recording, *built.back());
+    sessions.push_back({{built.back().get(), option_of(built.back()->method)}, recording.name});
   }
 
   const MapBuilder& builder = store.builder();
@@ -131,16 +129,9 @@ void add_sessions(const StoreSessions& options) {
   }
   if (!options.csv.empty()) files.emplace_back(options.csv, format_positions(map));
   if (!options.json_file.empty()) {
-    const Json result = {{"store", options.store},
-                         {"method", method},
-                         {"landmarks", map.landmarks()},
-                         {"routes", map.routes()},
-                         {"sessions", count},
-                         {"legs", store.legs()},
-                         {"left_out", builder.left_out().size()},
-                         {"positions", positions_json(map)},
-                         {"added", sessions}};
-    files.emplace_back(options.json_file, result.dump(2) + "\n");
+    files.emplace_back(options.json_file, results::json_text(results::StoreReport{
+                                              options.store, method, &map, count, store.legs(),
+                                              builder.left_out().size(), std::move(sessions)}));
   }
   files.write();
   fmt::print(

@@ -52,14 +52,6 @@ std::optional<Tolerance> judged(const std::string& tolerance, const HeldOut& hel
   return Tolerance{*length_of(tolerance), held_out.arrival_rms, held_out.legs.size()};
 }
 
-void add_tolerance(const std::optional<Tolerance>& tolerance, nlohmann::ordered_json& report) {
-  if (!tolerance) return;
-  report["tolerance"] = {{"m", tolerance->most},
-                         {"arrival_rms_m", tolerance->arrival_rms},
-                         {"legs", tolerance->legs},
-                         {"passed", tolerance->passed()}};
-}
-
 Page with_tolerance(const Page& page, const std::optional<Tolerance>& tolerance) {
   return tolerance ? trussmap::with_tolerance(page, *tolerance) : page;
 }

@@ -12,8 +12,6 @@
 #include <optional>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 namespace trussmap::app {
 
 /// "20mm", "2 cm", "0.02 m" or "0.02".
@@ -24,7 +22,6 @@ void add_tolerance(const Command& command, std::string& tolerance);
 [[nodiscard]] std::optional<Tolerance> judged(const std::string& tolerance,
                                               const HeldOut& held_out);
 
-void add_tolerance(const std::optional<Tolerance>& tolerance, nlohmann::ordered_json& report);
 [[nodiscard]] Page with_tolerance(const Page& page, const std::optional<Tolerance>& tolerance);
 
 /// Prints it as the last line; throws AnswerIsNo where it failed.

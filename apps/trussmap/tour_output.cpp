@@ -2,44 +2,18 @@
 // SPDX-License-Identifier: MIT
 #include "tour_output.hpp"
 
+#include "results/json.hpp"
+#include "results/tours.hpp"
+
 #include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace trussmap::app {
 namespace {
-
-using nlohmann::json;
-
-json metrics_json(const TourMetrics& metrics) {
-  json result = {{"stretch_error", metrics.stretch_error.mean},
-                 {"stretch_error_se", metrics.stretch_error.standard_error},
-                 {"orientation_error_rad", metrics.orientation_error.mean},
-                 {"orientation_error_rad_se", metrics.orientation_error.standard_error}};
-  if (metrics.position_error) {
-    result["position_error_m"] = metrics.position_error->mean;
-    result["position_error_m_se"] = metrics.position_error->standard_error;
-  }
-  return result;
-}
-
-json result_json(const TourResult& result, bool aligned) {
-  json tours = json::array();
-  for (std::size_t tour = 0; tour < result.tours.size(); ++tour) {
-    json methods;
-    for (const auto& [name, metrics] : result.tours[tour]) methods[name] = metrics_json(metrics);
-    tours.push_back({{"tour", tour + 1}, {"methods", methods}});
-  }
-  return {{"aligned", aligned},
-          {"tours", tours},
-          {"first_sight",
-           {{"before", metrics_json(result.first_sight_before)},
-            {"after", metrics_json(result.first_sight_after)}}}};
-}
 
 std::string counted(std::size_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
@@ -85,7 +59,8 @@ void show_tours(const TourResult& result, const TourOutput& output) {
   Files files;
   files.folders = output.maps;
   if (!output.json_file.empty()) {
-    files.emplace_back(output.json_file, result_json(result, output.aligned).dump(2) + "\n");
+    files.emplace_back(output.json_file,
+                       results::json_text(results::TourReport{&result, output.aligned}));
   }
   if (output.page.wanted()) {
     add_page(files, tour_page(result, output.seeds, output.world), output.page);

@@ -68,7 +68,7 @@ def main():
     for name, path in contents.files.items():
         stage.page(name, path)
     commands.write(stage, command)
-    json_keys.write(stage, commands.names_of(commands.help_of(command)))
+    json_keys.write(stage, command, commands.names_of(commands.help_of(command)))
     headers.write(stage)
     done("pages")
     gallery.write(stage, command, out / "gallery")

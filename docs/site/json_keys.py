@@ -1,15 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The trussmap authors
 # SPDX-License-Identifier: MIT
 #
-# The reference of what commands write with --json, from its schema.
+# The reference of what commands write with --json, from the schema that the command prints.
 import json
 import re
+import subprocess
 
-from pages import TOP
-
-SCHEMA = "docs/trussmap.schema.json"
 FEW = 3  # keys that are said again where others build on them
-PLAIN = {"texts": "list of texts", "numbers": "list of numbers", "numbers_or_null": "list of numbers or null"}
 WORDS = {"string": "text", "integer": "whole number", "boolean": "true or false", "null": "null"}
 
 
@@ -24,8 +21,6 @@ def reference_of(schema):
 def kind_of(schema):
     """A value's type in words."""
     reference = reference_of(schema)
-    if reference in PLAIN:
-        return PLAIN[reference]
     if reference:
         return f"[{reference}](#{reference})"
     if "anyOf" in schema:
@@ -95,13 +90,13 @@ def section(name, definitions, level):
     return text + ("\n" + table_of(inner, definitions) + "\n" if "properties" in inner else "")
 
 
-def write(stage, commands):
+def write(stage, command, commands):
     """A page with a section for each command, and their common parts after them."""
-    schema = json.loads((TOP / SCHEMA).read_text())
-    file = stage.file(SCHEMA)
-    text = (f"# JSON keys\n\nWhat each command writes with `--json`, from its [schema]({file}) "
+    printed = subprocess.run([command, "schema"], text=True, capture_output=True, check=True).stdout
+    schema = json.loads(printed)
+    text = ("# JSON keys\n\nWhat each command writes with `--json`, by the schema that `trussmap schema` prints "
             "([how to use it](formats.md#json-keys)). " + schema["description"] + "\n")
-    definitions = {name: one for name, one in schema["definitions"].items() if name not in PLAIN}
+    definitions = schema["definitions"]
     own = sorted(name for name in definitions if is_command(name, commands))
     for name in own:
         text += section(name, definitions, "##")

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: MIT
 #
 # Runs what the pages show. Blocks of one page run in their order, in a scratch folder that has
-# maps/, the schema in docs/ and build/trussmap, as the top of the project has them. Usage: run_blocks.py COMMAND [PAGE...]
+# maps/ and build/trussmap, as the top of the project has them. Usage: run_blocks.py COMMAND [PAGE...]
 #
 #   ```sh                     run by bash; must end with status 0. What builds (make, cmake) is not run
 #   ``` with "$ " lines       each run, and must print what stands below it, up to "..."
@@ -101,8 +101,6 @@ class Page:
             (folder / "build").mkdir()
             (folder / "build" / "trussmap").symlink_to(self.command)
             shutil.copytree(TOP / "maps", folder / "maps")
-            (folder / "docs").mkdir()
-            shutil.copy(TOP / "docs" / "trussmap.schema.json", folder / "docs")
             for block in FENCE.finditer(text):
                 line = text.count("\n", 0, block.start()) + 1
                 mark = MARK.search(text[:block.start()])

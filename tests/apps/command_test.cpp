@@ -325,7 +325,7 @@ TEST(Command, AWordThatIsNoCommandIsNamed) {
             "compare, completion, convert, diagnose, discover, effects, explore, fit, fleet, "
             "manual, merge, "
             "noise, "
-            "reveal, serve, simulate, tape, tour, umbmark, watch\n");
+            "reveal, schema, serve, simulate, tape, tour, umbmark, watch\n");
 }
 
 TEST(Command, ASessionGivenTwiceIsRefused) {

@@ -2,14 +2,17 @@
 // SPDX-License-Identifier: MIT
 //
 // The schema of what commands write with --json. Every test that runs the command holds what was
-// written against it (scratch_folder.hpp); here, that this can fail, and that no command is left
-// out.
+// written against it (scratch_folder.hpp); here, that this can fail, that no command is left out,
+// and that no key that readers depend on is.
 #include "json_schema.hpp"
 
 #include "json_file.hpp"
 #include "scratch_folder.hpp"
 
+#include <fstream>
 #include <regex>
+#include <set>
+#include <string>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -60,7 +63,7 @@ TEST(JsonSchemaOfACall, IsThatOfItsCommand) {
 }
 
 TEST_F(JsonSchema, HasEveryCommandThatWritesJson) {
-  const json schema = testing::read_json(TRUSSMAP_SOURCE_DIR "/docs/trussmap.schema.json");
+  const json schema = json::parse(run_trussmap("schema").output);
   const std::regex line(R"(\n  ([a-z]+) )");
   const std::string all = run_trussmap("--help").output;
   std::size_t with_json = 0;
@@ -73,6 +76,46 @@ TEST_F(JsonSchema, HasEveryCommandThatWritesJson) {
     EXPECT_TRUE(schema["definitions"].contains(definition_for(command))) << command;
   }
   EXPECT_GE(with_json, 16U);
+}
+
+/// Every key below a schema, as json_keys.txt has it.
+void add_keys(const json& schema, const json& definitions, const std::string& at,
+              std::set<std::string>& keys) {
+  if (const auto ref = schema.find("$ref"); ref != schema.end()) {
+    const auto name = ref->get<std::string>();
+    add_keys(definitions.at(name.substr(name.rfind('/') + 1)), definitions, at, keys);
+  }
+  for (const char* parts : {"allOf", "anyOf"}) {
+    const json list = schema.value(parts, json::array());
+    for (const json& part : list) {
+      add_keys(part, definitions, at, keys);
+    }
+  }
+  const json properties = schema.value("properties", json::object());
+  for (const auto& [key, value] : properties.items()) {
+    keys.insert(at + "." + key);
+    add_keys(value, definitions, at + "." + key, keys);
+  }
+  if (schema.contains("items")) add_keys(schema["items"], definitions, at, keys);
+  if (schema.contains("additionalProperties")) {
+    add_keys(schema["additionalProperties"], definitions, at + ".*", keys);
+  }
+}
+
+TEST_F(JsonSchema, HasEveryKeyThatReadersDependOn) {
+  const json definitions = json::parse(run_trussmap("schema").output).at("definitions");
+  std::set<std::string> keys;
+  for (const auto& [name, schema] : definitions.items()) {
+    add_keys(schema, definitions, name, keys);
+  }
+  std::ifstream promised(TRUSSMAP_SOURCE_DIR "/tests/apps/json_keys.txt");
+  std::size_t read = 0;
+  for (std::string line; std::getline(promised, line);) {
+    if (line.starts_with('#')) continue;
+    ++read;
+    EXPECT_TRUE(keys.contains(line)) << line;
+  }
+  EXPECT_GE(read, 480U);
 }
 
 TEST_F(JsonSchema, RefusesWhatIsNotAsDescribed) {

@@ -1,0 +1,336 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What compare, diagnose, discover and fit find.
+#pragma once
+
+#include "results/common.hpp"
+#include "trussmap/discover.hpp"
+#include "trussmap/fit_model.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trussmap::results {
+
+/// What a command says beside its result.
+template <typename Result>
+struct Reported {
+  const Result* result = nullptr;
+  const std::vector<NoiseBudget>* noise_budget = nullptr;
+  const std::vector<std::string>* notes = nullptr;
+  std::optional<Tolerance> tolerance = std::nullopt;
+};
+template <typename Result>
+inline constexpr auto kDescribed<Reported<Result>> = described(
+    keys_of("result", &Reported<Result>::result),
+    field("tolerance", &Reported<Result>::tolerance).if_any(),
+    field(
+        "noise_budget",
+        [](const Reported<Result>& one) -> const std::vector<NoiseBudget>& {
+          return *one.noise_budget;
+        },
+        "what of dead reckoning's error by the wheels comes from which noise"),
+    field(
+        "notes",
+        [](const Reported<Result>& one) -> const std::vector<std::string>& { return *one.notes; },
+        kOwnNotes));
+
+// ----------------------------------------
+// compare.
+
+template <>
+inline constexpr auto kDescribed<LegMisfit> = described(
+    field("from", &LegMisfit::from, "landmark"), field("to", &LegMisfit::to, "landmark"),
+    field("t", &LegMisfit::t, "s, at its end"), field("chi2", &LegMisfit::chi2, "of its segments"),
+    field("dof", &LegMisfit::dof, "values among them").at_least(0.0),
+    field("stretch_error", &LegMisfit::stretch_error, "(s - s0)/s0, signed: + is measured too long")
+        .or_null(),
+    field("orientation_error_rad", &LegMisfit::orientation_error, "signed").or_null());
+
+template <>
+inline constexpr auto kDescribed<RouteMisfit> = described(
+    field("from", &RouteMisfit::from, "landmark"), field("to", &RouteMisfit::to, "landmark"),
+    field("traversals", &RouteMisfit::traversals).at_least(0.0),
+    field("chi2", &RouteMisfit::chi2, "sum"),
+    field("force_per_m", &RouteMisfit::force,
+          "in the bar, along it: gradient of chi2/2; + is tension"),
+    field("stretch_error", &RouteMisfit::stretch_error, "mean, signed").or_null(),
+    field("orientation_error_rad", &RouteMisfit::orientation_error, "mean, signed").or_null());
+
+template <>
+inline constexpr auto kDescribed<LandmarkMisfit> =
+    described(field("landmark", &LandmarkMisfit::landmark, "its name"),
+              field("sightings", &LandmarkMisfit::sightings, "of it").at_least(0.0),
+              field("chi2", &LandmarkMisfit::chi2, "of its sightings and survey"));
+
+template <>
+inline constexpr auto kDescribed<Trend> = described(
+    field("residual", &Trend::kind, "stretch, orientation, turn, compass, sighting"),
+    field("against", &Trend::against, "the variable; all: a constant"),
+    field("channel", through(&Trend::effect, &Effect::channel), kWhatChannel),
+    field("shape", through(&Trend::effect, shape_texts), kWhatShape),
+    field("coefficients", through(&Trend::effect, &Effect::coefficients),
+          "of the trend as an effect"),
+    field("score", &Trend::score, "chi2 that it explains"),
+    field("dof", &Trend::dof, "of it").at_least(0.0), share("p_value", &Trend::p_value, "alone"),
+    share("p_adjusted", &Trend::p_adjusted, "Holm's, over all trends"),
+    field("size_rms", &Trend::size, "over rows or events, in the channel's unit"));
+
+template <>
+inline constexpr auto kDescribed<SourceCalibration> =
+    described(field("source", &SourceCalibration::source, "of the model's [noise]"),
+              field("factor", &SourceCalibration::factor,
+                    "by which its stated standard deviation is too small"),
+              field("sd", &SourceCalibration::sd, "of the factor").or_null(),
+              field("redundancy", &SourceCalibration::redundancy, "measurements of it left over"));
+
+template <>
+inline constexpr auto kDescribed<Outlier> =
+    described(field("what", &Outlier::what, "the measurement, in words"),
+              field("statistic", &Outlier::statistic, "chi2"),
+              field("dof", &Outlier::dof, "of it").at_least(0.0),
+              share("p_adjusted", &Outlier::p_adjusted, "Bonferroni's, over all measurements"));
+
+template <>
+inline constexpr auto kDescribed<Comparison> = described(
+    field(
+        "verdict", [](const Comparison& one) { return verdict_of(one); },
+        "misfit: the recordings contradict the model")
+        .one_of("consistent | misfit"),
+    field("chi2", &Comparison::chi2, "of the fit with the model's coefficients"),
+    field("dof", &Comparison::dof, "its degrees of freedom"),
+    field("coefficients_estimated", &Comparison::coefficients, "in this fit").at_least(0.0),
+    share("p_value", &Comparison::p_value, "of chi2 as a whole"), field("legs", &Comparison::legs),
+    field("landmarks", &Comparison::landmarks), field("heldout", &Comparison::held_out),
+    field("worst", &Comparison::worst, "all legs, worst first"),
+    field("routes", &Comparison::routes), field("worst_landmarks", &Comparison::worst_landmarks),
+    field("trends", &Comparison::trends, "strongest first"), field("noise", &Comparison::sources),
+    field("outliers", &Comparison::outliers),
+    field(
+        "advice", [](const Comparison& one) { return in_words(one.lacks); },
+        "what these data lack, and what that costs"),
+    field("sightings_used", &Comparison::sightings), field("warnings", &Comparison::warnings));
+
+// ----------------------------------------
+// fit.
+
+/// What stays as it was, in words.
+[[nodiscard]] inline std::vector<std::string> not_fitted_in_words(const EffectEstimate& estimate) {
+  std::vector<std::string> lines;
+  for (const UnfittedCoefficient& one : estimate.not_fitted) {
+    lines.push_back(in_words(estimate, one));
+  }
+  return lines;
+}
+
+/// An effect as fit has it.
+struct FittedEffect {
+  const EffectEstimate* estimate = nullptr;
+};
+template <>
+inline constexpr auto kDescribed<FittedEffect> = described(
+    keys_of("estimate", &FittedEffect::estimate),
+    field(
+        "not_fitted", [](const FittedEffect& one) { return not_fitted_in_words(*one.estimate); },
+        "coefficients that these recordings cannot show, and why"));
+
+[[nodiscard]] inline std::vector<FittedEffect> fitted_effects(const EffectGain& gain) {
+  std::vector<FittedEffect> effects;
+  for (const EffectEstimate& one : gain.with.effects) effects.push_back({&one});
+  return effects;
+}
+
+template <>
+inline constexpr auto kDescribed<EffectGain> = described(
+    field("chi2", through(&EffectGain::with, &ModelFit::chi2), "with the effects fitted"),
+    field("dof", through(&EffectGain::with, &ModelFit::dof), "its degrees of freedom"),
+    share("p_value", through(&EffectGain::with, &ModelFit::p_value), "of chi2 as a whole"),
+    field("effects", fitted_effects), field("heldout", &EffectGain::held_out_with),
+    field("without_effects", described(field("chi2", through(&EffectGain::without, &ModelFit::chi2),
+                                             "of the model without its effects"),
+                                       field("dof", through(&EffectGain::without, &ModelFit::dof),
+                                             "its degrees of freedom"),
+                                       field("heldout", &EffectGain::held_out_without))),
+    field("predicted_decrease", &EffectGain::predicted_decrease,
+          "of chi2, by the score test before the fit"),
+    field("warnings", through(&EffectGain::with, &ModelFit::warnings)));
+
+/// What fit says.
+struct FitReport {
+  const EffectGain* gain = nullptr;
+  const std::optional<FittedNoise>* noise = nullptr;
+  const std::vector<std::string>* notes = nullptr;
+  std::optional<Tolerance> tolerance = std::nullopt;
+};
+template <>
+inline constexpr auto kDescribed<FitReport> =
+    described(keys_of("gain", &FitReport::gain),
+              field(
+                  "noise", [](const FitReport& one) { return *one.noise; }, "with --noise")
+                  .if_any(),
+              field("tolerance", &FitReport::tolerance).if_any(),
+              field(
+                  "notes", [](const FitReport& one) { return *one.notes; }, kOwnNotes));
+
+// ----------------------------------------
+// diagnose.
+
+template <>
+inline constexpr auto kDescribed<Finding> = described(
+    keys_of("effect", &Finding::effect),
+    field("score", &Finding::score, "chi2 that adding it would take away"),
+    field("dof", &Finding::dof, "of it").at_least(0.0),
+    share("p_value", &Finding::p_value, "alone"),
+    share("p_adjusted", &Finding::p_adjusted, "Holm's, over all that was tried"),
+    field("status", &Finding::status,
+          "missing: named by these data; absent: a coefficient of any practical size would have "
+          "been seen; negligible: there, and changes no leg's end by more than the noise; cannot "
+          "tell: the data could not show it, or another effect shows as well")
+        .one_of("missing | absent | negligible | cannot tell"),
+    field("coefficients", through(&Finding::effect, &Effect::coefficients), "as estimated alone")
+        .or_null(),
+    field("sd", &Finding::sd, "standard errors").or_null(),
+    field("smallest_detectable", &Finding::minimal_detectable,
+          "coefficient of each shape alone that is seen with 90 % power at p = 0.05/200")
+        .or_null(),
+    field("heldout", &Finding::held_out, "predicted, with it added"),
+    field("log_evidence", &Finding::evidence, "by which candidates are ordered"),
+    field("tried", &Finding::tried, "members of its family").at_least(0.0),
+    field("implausible", &Finding::implausible, "far larger than such effects are"),
+    field("indistinguishable_from", &Finding::look_alikes, "of what is missing"));
+
+template <>
+inline constexpr auto kDescribed<NoiseTest> =
+    described(field("law", &NoiseTest::law, "per metre, per second, per start, ..."),
+              field("score", &NoiseTest::score, "fall of -2 log of the restricted likelihood"),
+              field("dof", &NoiseTest::dof, "of it").at_least(0.0),
+              share("p_adjusted", &NoiseTest::p_adjusted, "Holm's, over the laws"),
+              field("size", &NoiseTest::size, "standard deviation that the law adds").or_null(),
+              field("unit", &NoiseTest::unit, "of size"),
+              field(
+                  "in_words", [](const NoiseTest& one) { return in_words(one); }, kInWords));
+
+template <>
+inline constexpr auto kDescribed<EventTest> = described(
+    field("kind", &EventTest::kind, "what it is").one_of("leg | landmark | sighting | session"),
+    field("name", &EventTest::name, "its name, with the time"),
+    field("score", &EventTest::score, "chi2"), field("dof", &EventTest::dof, "of it").at_least(0.0),
+    share("p_adjusted", &EventTest::p_adjusted, "Holm's, over all events"),
+    field(
+        "in_words", [](const EventTest& one) { return in_words(one); }, kInWords));
+
+template <>
+inline constexpr auto kDescribed<Unobservable> = described(
+    keys_of("effect", &Unobservable::effect),
+    field(
+        "why", [](const Unobservable& one) { return advice_on(one).why; },
+        "these data cannot show it"),
+    field(
+        "remedy", [](const Unobservable& one) { return advice_on(one).drive; }, "what would"));
+
+/// The noise that a diagnosis goes by; nullptr where none was estimated.
+[[nodiscard]] inline const FittedNoise* noise_of(const Diagnosis& result) {
+  return result.under ? &result.under->noise : nullptr;
+}
+
+template <>
+inline constexpr auto kDescribed<Diagnosis> = described(
+    field(
+        "verdict", [](const Diagnosis& one) { return verdict_of(one); },
+        "what these data say of the model")
+        .one_of("missing | nothing missing | unexplained misfit"),
+    field("missing", &Diagnosis::missing,
+          "the first candidate's name, where it is missing; else empty"),
+    share("p_value", &Diagnosis::p_value, "its, adjusted; else of chi2"),
+    field("chi2", &Diagnosis::chi2, "of the model given"),
+    field("dof", &Diagnosis::dof, "its degrees of freedom"),
+    field("coefficients_estimated", &Diagnosis::coefficients, "in this fit").at_least(0.0),
+    field("heldout", &Diagnosis::held_out), field("tried", &Diagnosis::tried, "tests"),
+    field("candidates", &Diagnosis::findings, "best first"),
+    field("noise", &Diagnosis::noise,
+          "laws that explain what errors there are beyond what the model states, best first"),
+    field("noise_estimated", noise_of, "by which all is judged; null with --stated-noise"),
+    field("outliers", &Diagnosis::events, "single events, likeliest first"),
+    field(
+        "advice", [](const Diagnosis& one) { return in_words(one.lacks); },
+        "what these data lack, and what that costs"),
+    field(
+        "next_drive", [](const Diagnosis& one) { return in_words(one.next_drive); },
+        "what to drive to tell the rivals apart"),
+    field("unobservable", &Diagnosis::unobservable), field("sightings_used", &Diagnosis::sightings),
+    field("warnings", &Diagnosis::warnings));
+
+// ----------------------------------------
+// discover.
+
+/// What the diagnosis before a step foretold of it.
+struct Promised {
+  const DiscoveryStep* step = nullptr;
+};
+template <>
+inline constexpr auto kDescribed<Promised> = described(
+    field(
+        "chi2_decrease", [](const Promised& one) { return one.step->predicted_decrease; },
+        "that the diagnosis foretold"),
+    field(
+        "arrival_rms_m", [](const Promised& one) { return one.step->predicted.arrival_rms; },
+        "that it foretold, of held-out legs"));
+
+[[nodiscard]] inline std::optional<SizedEffect> added_in(const DiscoveryStep& step) {
+  return step.added ? std::optional(SizedEffect{&*step.added}) : std::nullopt;
+}
+[[nodiscard]] inline std::vector<std::string> together_in(const DiscoveryStep& step) {
+  std::vector<std::string> names;
+  for (const Effect& one : step.together) names.push_back(one.name);
+  return names;
+}
+
+/// A value of a step that adds an effect; none of the first.
+template <auto kMember>
+[[nodiscard]] auto of_added(const DiscoveryStep& step) {
+  return step.added ? std::optional(step.*kMember) : std::nullopt;
+}
+
+template <>
+inline constexpr auto kDescribed<DiscoveryStep> = described(
+    field("added", added_in, "null: the model given"),
+    field("chi2", &DiscoveryStep::chi2, "of this step's model"),
+    field("dof", &DiscoveryStep::dof, "its degrees of freedom"),
+    field("left_out", &DiscoveryStep::left_out,
+          "sightings, fixes and loops that contradict all others"),
+    field("heldout", &DiscoveryStep::held_out, "over the same legs in every step"),
+    field("reckoned_10_s_m", &DiscoveryStep::reckoned_10,
+          "dead reckoning's error over 10 s against the fit's own path; null: fewer than 20 such "
+          "stretches"),
+    field("reckoned_30_s_m", &DiscoveryStep::reckoned_30, "the same over 30 s"),
+    field("together", together_in,
+          "effects added together with it, where the model cannot be fitted with them alone")
+        .if_any(),
+    field("dropped", of_added<&DiscoveryStep::dropped>, "effects that are no longer significant")
+        .if_any(),
+    field("promised",
+          [](const DiscoveryStep& step) {
+            return step.added ? std::optional(Promised{&step}) : std::nullopt;
+          })
+        .if_any(),
+    field("indistinguishable_from", of_added<&DiscoveryStep::look_alikes>).if_any());
+
+template <>
+inline constexpr auto kDescribed<Discovery> = described(
+    field("steps", &Discovery::steps),
+    field(
+        "stopped", [](const Discovery& one) { return stop_in_words(one); }, "why"),
+    field(
+        "verdict", [](const Discovery& one) { return verdict_of(one); }, "of the model found")
+        .one_of("consistent | unexplained misfit"),
+    field("effects", through(&Discovery::found, &ModelFit::effects), "of the model found"),
+    field(
+        "noise_estimated", [](const Discovery& one) { return noise_of(one.last); },
+        "by which all is judged; null with --stated-noise"),
+    field("sightings_used", &Discovery::sightings),
+    field("warnings", through(&Discovery::found, &ModelFit::warnings)));
+
+}  // namespace trussmap::results
