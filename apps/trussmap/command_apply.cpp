@@ -31,10 +31,10 @@ struct ApplyCommand {
   bool adjusted = false;
 };
 
-std::vector<TimedPose> adjusted(const ModelRecordings& input, const ApplyCommand& options) {
-  FitOptions how = fit_options(options.input);
+std::vector<TimedPose> adjusted(const Session& session) {
+  FitOptions how = session.options.fit;
   how.fit_effects = false;
-  const ModelFit fit = fit_model(input.recordings, input.model, how);
+  const ModelFit fit = fit_model(session.rows.recordings, session.model, how);
   for (const std::string& warning : fit.warnings) fmt::print("{}", warning_text(warning));
   for (const std::string& one : fit.left_out) fmt::print("left out: {}\n", one);
   return adjusted_poses(fit);
@@ -46,13 +46,13 @@ void run_apply(ApplyCommand options) {
   }
   if (options.epoch && options.mcap.empty()) throw UsageError("apply: --epoch goes with --mcap");
   options.input.recordings = {options.recording};
-  const ModelRecordings input = read_model_recordings(options.input);
-  for (const std::string& one : unfitted_in_words(input.model)) {
+  const Session session = read_session(options.input);
+  for (const std::string& one : unfitted_in_words(session.model)) {
     fmt::print("{}", warning_text(one));
   }
   const std::vector<TimedPose> poses =
-      options.adjusted ? adjusted(input, options)
-                       : dead_reckoned_poses(input.recordings.front(), input.model);
+      options.adjusted ? adjusted(session)
+                       : dead_reckoned_poses(session.rows.recordings.front(), session.model);
   std::vector<std::pair<std::filesystem::path, std::string>> files;
   std::vector<std::string> names;
   const auto add = [&](const std::string& name, std::string text) {
@@ -76,7 +76,7 @@ void run_apply(ApplyCommand options) {
   fmt::print("written: {}\n", fmt::join(names, ", "));
   print_epoch(epoch);
   if (!options.adjusted) {
-    fmt::print("{}", lasting_noise_text(input.model.noise, style_of(stdout)));
+    fmt::print("{}", lasting_noise_text(session.model.noise, style_of(stdout)));
   }
 }
 

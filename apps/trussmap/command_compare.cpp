@@ -30,37 +30,31 @@ struct CompareCommand {
 };
 
 void run_compare(const CompareCommand& options) {
-  Progress progress({{"reading", 1}, {"fitting the map", 4}, {"comparing", 40}});
+  Progress progress(compare_stages());
   progress.next();
-  const ModelRecordings input = read_model_recordings(options.input);
-  CompareOptions how = compare_options(options.input);
-  how.fit.fit_effects = false;
-  progress.next();
-  const ModelFit fit = fit_model(input.recordings, input.model, how.fit);
-  progress.next();
-  const Comparison result = compare(input, fit, how);
-  const std::vector<NoiseBudget> budget = noise_budget(input.recordings, input.model);
-  const std::optional<Tolerance> tolerance = judged(options.tolerance, result.held_out);
+  const Session session = read_session(options.input);
+  const ComparisonReport report = compare(session, [&progress] { progress.next(); });
+  const std::optional<Tolerance> tolerance = judged(options.tolerance, report.found.held_out);
   Files files;
   if (!options.input.json.empty()) {
-    files.emplace_back(options.input.json, results::json_text(results::Reported<Comparison>{
-                                               &result, &budget, &input.notes, tolerance}));
+    files.emplace_back(options.input.json, results::json_text(results::Reported<ComparisonReport>{
+                                               &report, &session.rows.notes, tolerance}));
   }
   if (options.page.wanted()) {
+    const std::string subject = subject_of(options.input.recordings, options.input.model);
     add_page(
         files,
-        with_tolerance(
-            with_drive(comparison_page(evidence_of(fit, result),
-                                       subject_of(options.input.recordings, options.input.model)),
-                       input.model.robot, input.recordings),
-            tolerance),
-        options.page, input.recordings);
+        with_tolerance(with_drive(comparison_page(evidence_of(report.fit, report.found), subject),
+                                  session.model.robot, session.rows.recordings),
+                       tolerance),
+        options.page, session.rows.recordings);
   }
   files.write();
   progress.end();
   fmt::print("{}{}",
-             comparison_text(result, input.model.noise, budget, options.worst, style_of(stdout)),
-             notes_text(input.notes));
+             comparison_text(report.found, session.model.noise, report.noise_budget, options.worst,
+                             style_of(stdout)),
+             notes_text(session.rows.notes));
   end_by(tolerance);
 }
 

@@ -32,42 +32,35 @@ struct DiagnoseCommand {
 };
 
 void run_diagnose(const DiagnoseCommand& options) {
-  std::vector<ProgressStep> steps{
-      {"reading", 0.5}, {"fitting the map", 2.5}, {"looking for what is missing", 50}};
-  if (options.page.wanted()) steps.push_back({"comparing with what is missing", 50});
-  Progress progress(steps);
+  std::vector<Stage> stages = diagnose_stages();
+  if (options.page.wanted()) stages.push_back({"comparing with what is missing", 50});
+  Progress progress(stages);
   progress.next();
-  ModelRecordings input = read_model_recordings(options.input);
-  const DiagnoseOptions how = diagnose_options(options.input);
-  progress.next();
-  ModelFit fit = fit_model(input.recordings, input.model, how.fit);
-  progress.next();
-  const Diagnosis result = diagnose(input, fit, how);
-  const std::vector<NoiseBudget> budget =
-      noise_budget(input.recordings, result.under ? result.under->fit.model : fit.model);
-  const RobotConstants constants =
-      with_velocity_variances(robot_constants(result, fit.model), input.recordings, fit.model);
-  const std::optional<Tolerance> tolerance = judged(options.tolerance, result.held_out);
+  Session session = read_session(options.input);
+  const DiagnosisReport report = diagnose(session, [&progress] { progress.next(); });
+  const std::optional<Tolerance> tolerance = judged(options.tolerance, report.found.held_out);
   Files files;
   if (!options.input.json.empty()) {
-    const results::Reported<Diagnosis> report{&result, &budget, &input.notes, tolerance};
-    files.emplace_back(options.input.json,
-                       results::json_text(results::WithConstants{report, &constants}));
+    files.emplace_back(options.input.json, results::json_text(results::Reported<DiagnosisReport>{
+                                               &report, &session.rows.notes, tolerance}));
   }
   progress.next();
   if (options.page.wanted()) {
-    const Page page = diagnosis_page(result, evidence_of(input.recordings, fit, result, how),
+    const Page page = diagnosis_page(report.found,
+                                     evidence_of(session.rows.recordings, report.fit, report.found,
+                                                 diagnose_options(session.options)),
                                      subject_of(options.input.recordings, options.input.model));
     add_page(files,
-             with_tolerance(
-                 with_drive(with_constants(page, constants), input.model.robot, input.recordings),
-                 tolerance),
-             options.page, input.recordings);
+             with_tolerance(with_drive(with_constants(page, report.constants), session.model.robot,
+                                       session.rows.recordings),
+                            tolerance),
+             options.page, session.rows.recordings);
   }
   files.write();
   progress.end();
-  fmt::print("{}{}{}", diagnosis_text(result, budget, options.list, style_of(stdout)),
-             constants_text(constants, style_of(stdout)), notes_text(input.notes));
+  fmt::print("{}{}{}",
+             diagnosis_text(report.found, report.noise_budget, options.list, style_of(stdout)),
+             constants_text(report.constants, style_of(stdout)), notes_text(session.rows.notes));
   end_by(tolerance);
 }
 

@@ -42,7 +42,7 @@ class Told {
     const bool fits = stage.kind == DiscoveryStage::Kind::fitting_effect;
     const bool rival = fits && fits_;  // in the same step
     fits_ = fits;
-    if (fits && !rival && ++found_ > 1) progress_.insert({kAdding, kLooking});
+    if (fits && !rival && ++found_ > 1) progress_.insert(one_more_effect());
     if (!rival) progress_.next();
     if (fits) progress_.say(fmt::format("fitting \"{}\"", stage.effect));
   }
@@ -53,15 +53,17 @@ class Told {
   void end() { progress_.end(); }
 
  private:
-  static std::vector<ProgressStep> steps(bool page) {
-    std::vector<ProgressStep> result{
-        {"reading", 0.5}, {"fitting the model given", 2.5}, kLooking, kAdding, kLooking};
+  /// The last two stages: an effect, and what is missing then.
+  static std::vector<Stage> one_more_effect() {
+    const std::vector<Stage> stages = discover_stages();
+    return {stages.end() - 2, stages.end()};
+  }
+  static std::vector<Stage> steps(bool page) {
+    std::vector<Stage> result = discover_stages();
     if (page) result.push_back({"comparing the models", 60});
     return result;
   }
 
-  static inline const ProgressStep kLooking{"looking for what is missing", 50};
-  static inline const ProgressStep kAdding{"fitting an effect", 20};
   Progress progress_;
   bool fits_ = false;
   int found_ = 0;
@@ -69,37 +71,35 @@ class Told {
 
 void run_discover(const DiscoverCommand& options) {
   Told told(options.page.wanted());
-  ModelRecordings input = read_model_recordings(options.input);
-  DiscoverOptions how;
-  how.diagnosis = diagnose_options(options.input);
-  how.most_effects = options.most;
-  how.progress = [&told](const DiscoveryStage& stage) { told.part(stage); };
-  const Discovery result = discover(input, input.model, how);
+  Session session = read_session(options.input);
+  session.options.most_effects = options.most;
+  const DiscoveryReport report =
+      discover(session, [&told](const DiscoveryStage& stage) { told.part(stage); });
   told.page();
-  const std::vector<NoiseBudget> budget = noise_budget(input.recordings, result.found.model);
-  const RobotConstants constants = with_velocity_variances(robot_constants(result, input.model),
-                                                           input.recordings, result.found.model);
-  const std::optional<Tolerance> tolerance = judged(options.tolerance, result.last.held_out);
+  const std::optional<Tolerance> tolerance = judged(options.tolerance, report.found.last.held_out);
   Files files;
-  if (!options.out.empty()) files.emplace_back(options.out, format_model(result.found.model));
+  if (!options.out.empty()) files.emplace_back(options.out, format_model(report.found.found.model));
   if (!options.input.json.empty()) {
-    const results::Reported<Discovery> report{&result, &budget, &input.notes, tolerance};
-    files.emplace_back(options.input.json,
-                       results::json_text(results::WithConstants{report, &constants}));
+    files.emplace_back(options.input.json, results::json_text(results::Reported<DiscoveryReport>{
+                                               &report, &session.rows.notes, tolerance}));
   }
   if (options.page.wanted()) {
-    const Page page = discovery_page(result, evidence_of(input.recordings, result, how.diagnosis),
-                                     subject_of(options.input.recordings, options.input.model));
+    const Page page = discovery_page(
+        report.found,
+        evidence_of(session.rows.recordings, report.found, diagnose_options(session.options)),
+        subject_of(options.input.recordings, options.input.model));
     add_page(files,
-             with_tolerance(
-                 with_drive(with_constants(page, constants), input.model.robot, input.recordings),
-                 tolerance),
-             options.page, input.recordings);
+             with_tolerance(with_drive(with_constants(page, report.constants), session.model.robot,
+                                       session.rows.recordings),
+                            tolerance),
+             options.page, session.rows.recordings);
   }
   files.write();
   told.end();
-  fmt::print("{}{}{}", discovery_text(result, input.model.noise, budget, style_of(stdout)),
-             constants_text(constants, style_of(stdout)), notes_text(input.notes));
+  fmt::print(
+      "{}{}{}",
+      discovery_text(report.found, session.model.noise, report.noise_budget, style_of(stdout)),
+      constants_text(report.constants, style_of(stdout)), notes_text(session.rows.notes));
   end_by(tolerance);
 }
 

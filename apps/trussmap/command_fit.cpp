@@ -34,69 +34,41 @@ struct FitCommand {
   std::string tolerance;
 };
 
-/// The model without effects and as fitted, side by side.
-EffectGain fit_both(const ModelRecordings& input, const Model& model, const FitCommand& options,
-                    Progress& progress) {
-  FitOptions how = fit_options(options.input);
-  Model without = model;
-  without.effects.clear();
-  progress.next();
-  how.fit_effects = false;
-  const ModelFit before = fit_model(input.recordings, without, how);
-  how.fit_effects = true;
-  progress.next();
-  const ModelFit after = fit_model(input.recordings, model, how);
-  progress.next();
-  return gain_of_effects(input.recordings, before, after, options.input.legs);
-}
-
 void run_fit(const FitCommand& options) {
-  std::vector<ProgressStep> steps{{"reading", 0.5},
-                                  {"fitting without effects", 2.5},
-                                  {"fitting the effects", 5},
-                                  {"predicting held-out legs", 8}};
-  if (options.noise) steps.insert(steps.begin() + 1, {"estimating the noise", 8});
-  if (options.page.wanted()) steps.push_back({"comparing both", 50});
-  Progress progress(steps);
+  std::vector<Stage> stages = fit_stages(options.noise);
+  if (options.page.wanted()) stages.push_back({"comparing both", 50});
+  Progress progress(stages);
   progress.next();
-  const ModelRecordings input = read_model_recordings(options.input);
-  if (input.model.effects.empty() && !options.noise) {
+  const Session session = read_session(options.input);
+  if (session.model.effects.empty() && !options.noise) {
     throw UsageError(options.input.model +
                      " has no effect to fit, expected one or more (see trussmap add)");
   }
-  Model model = input.model;
-  std::optional<FittedNoise> noise;
-  if (options.noise) {
-    progress.next();
-    noise = fit_model_and_noise(input.recordings, model, fit_options(options.input)).noise;
-    model.noise = noise->noise;
-  }
-  const EffectGain result = fit_both(input, model, options, progress);
-  const RobotConstants constants = with_velocity_variances(
-      robot_constants(input.model, result.with), input.recordings, result.with.model);
-  const std::optional<Tolerance> tolerance = judged(options.tolerance, result.held_out_with);
+  const FitReport report = fit(session, options.noise, [&progress] { progress.next(); });
+  const std::optional<Tolerance> tolerance = judged(options.tolerance, report.gain.held_out_with);
   Files files;
-  if (!options.out.empty()) files.emplace_back(options.out, format_model(result.with.model));
+  if (!options.out.empty()) files.emplace_back(options.out, format_model(report.gain.with.model));
   if (!options.input.json.empty()) {
-    const results::FitReport report{&result, &noise, &input.notes, tolerance};
-    files.emplace_back(options.input.json,
-                       results::json_text(results::WithConstants{report, &constants}));
+    files.emplace_back(options.input.json, results::json_text(results::Reported<FitReport>{
+                                               &report, &session.rows.notes, tolerance}));
   }
   progress.next();
   if (options.page.wanted()) {
-    FitEvidence evidence = evidence_of(input.recordings, result, compare_options(options.input));
-    if (noise) evidence.noise = in_words(*noise);
+    FitEvidence evidence =
+        evidence_of(session.rows.recordings, report.gain, compare_options(session.options));
+    if (report.noise) evidence.noise = in_words(*report.noise);
     const std::string subject = subject_of(options.input.recordings, options.input.model);
-    add_page(files,
-             with_tolerance(with_drive(with_constants(fit_page(evidence, subject), constants),
-                                       input.model.robot, input.recordings),
-                            tolerance),
-             options.page, input.recordings);
+    add_page(
+        files,
+        with_tolerance(with_drive(with_constants(fit_page(evidence, subject), report.constants),
+                                  session.model.robot, session.rows.recordings),
+                       tolerance),
+        options.page, session.rows.recordings);
   }
   files.write();
   progress.end();
-  fmt::print("{}{}{}", fit_text(result, noise, style_of(stdout)),
-             constants_text(constants, style_of(stdout)), notes_text(input.notes));
+  fmt::print("{}{}{}", fit_text(report.gain, report.noise, style_of(stdout)),
+             constants_text(report.constants, style_of(stdout)), notes_text(session.rows.notes));
   end_by(tolerance);
 }
 

@@ -71,16 +71,15 @@ void run_add(const AddCommand& options) {
   const std::string date = options.date.empty() ? today() : options.date;
   static_cast<void>(day_number(date));
   const std::map<std::string, std::string> metadata = metadata_of(options.metadata);
-  const ModelRecordings input = read_model_recordings(options.input);
-  FleetRow row =
-      fleet_row(options.robot, date, input.recordings, input.model, format_model(input.model),
-                fit_options(options.input), options.input.legs);
+  const Session session = read_session(options.input);
+  FleetRow row = fleet_row(options.robot, date, session.rows.recordings, session.model,
+                           format_model(session.model), session.options.fit, session.options.legs);
   row.metadata = metadata;
   add_to_fleet(options.store, row, options.replace);
   fmt::print("{}: robot {} on {}, chi2 {:.1f} ({} dof), {} coefficients\n",
              escaped_controls(options.store), escaped_controls(row.robot), row.date, row.chi2,
              row.dof, row.columns.size());
-  fmt::print("{}", notes_text(input.notes));
+  fmt::print("{}", notes_text(session.rows.notes));
 }
 
 void run_merge(const MergeCommand& options) {

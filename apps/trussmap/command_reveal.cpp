@@ -43,12 +43,12 @@ Estimated estimated(const RevealOptions& options) {
   ModelRecordingsOptions input;
   input.recordings = {options.folder};
   input.model = options.model;
-  const ModelRecordings read = read_model_recordings(input);
+  const Session session = read_session(input);
   Estimated result;
-  result.effects = read.model.effects;
+  result.effects = session.model.effects;
   if (result.effects.empty()) return result;
   try {
-    const ModelFit fit = fit_model(read.recordings, read.model, fit_options(input));
+    const ModelFit fit = fit_model(session.rows.recordings, session.model, session.options.fit);
     for (std::size_t k = 0; k < fit.effects.size(); ++k) {
       result.sd.push_back(fit.effects[k].sd);
       if (result.effects[k].coefficients.empty()) result.effects[k] = fit.effects[k].effect;

@@ -33,10 +33,10 @@ using results::WithConstants;
 
 Json schema() {
   results::SchemaMaker maker;
-  maker.define<Reported<Comparison>>("compare");
-  maker.define<WithConstants<Reported<Diagnosis>>>("diagnose");
-  maker.define<WithConstants<Reported<Discovery>>>("discover");
-  maker.define<WithConstants<results::FitReport>>("fit");
+  maker.define<Reported<ComparisonReport>>("compare");
+  maker.define<Reported<DiagnosisReport>>("diagnose");
+  maker.define<Reported<DiscoveryReport>>("discover");
+  maker.define<Reported<FitReport>>("fit");
   maker.define<results::StoreReport>("build-store");
   maker.define<results::AdjustReport>("adjust");
   maker.define<results::DistributedReport>("adjust-solver");

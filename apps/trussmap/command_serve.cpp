@@ -85,14 +85,14 @@ std::string usual_folder(const std::string& recording) {
 }
 
 void run_serve(const ServeCommand& options) {
-  ModelRecordings input = read_model_recordings(options.input);
-  for (Effect& effect : input.model.effects) effect.coefficients.clear();  // they are fitted
+  Session session = read_session(options.input);
+  for (Effect& effect : session.model.effects) effect.coefficients.clear();  // they are fitted
   LocalServer server(static_cast<std::uint16_t>(options.port));
   const std::string folder =
       options.work.empty() ? usual_folder(options.input.recordings.front()) : options.work;
-  const std::vector<std::string> notes = input.notes;
-  BenchWork work({std::move(static_cast<PreparedRecordings&>(input)), std::move(input.model),
-                  diagnose_options(options.input),
+  const std::vector<std::string> notes = session.rows.notes;
+  BenchWork work({std::move(session.rows), std::move(session.model),
+                  diagnose_options(session.options),
                   subject_of(options.input.recordings, options.input.model), folder});
   const BenchOrigin origin{options.input.recordings, options.input.model};
   fmt::print(

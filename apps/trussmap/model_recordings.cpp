@@ -102,6 +102,30 @@ void check_stretches(const std::vector<Recording>& recordings,
   }
 }
 
+/// --without, --exclude, --gate and what else says how the recordings are used.
+SessionOptions session_options(const ModelRecordingsOptions& options) {
+  const auto left_out = [&options](const char* what) {
+    return std::find(options.without.begin(), options.without.end(), what) != options.without.end();
+  };
+  SessionOptions result;
+  result.fit = gated_fit(options.gate);
+  result.fit.use_survey = !left_out("survey");
+  result.fit.use_truth = !left_out("truth");
+  result.fit.use_fixes = !left_out("fixes");
+  result.fit.use_loops = !left_out("loops");
+  for (const std::string& text : options.exclude) {
+    const StretchOfTime one = parse_stretch(text);
+    const std::size_t place = one.recording.value_or(0);
+    if (result.fit.excluded.size() <= place) result.fit.excluded.resize(place + 1);
+    result.fit.excluded[place].push_back(one.time);
+  }
+  result.legs = options.legs;
+  result.every = options.every;
+  result.level = options.level;
+  result.estimate_noise = !options.stated_noise;
+  return result;
+}
+
 }  // namespace
 
 std::vector<Recording> read_recordings(const std::vector<std::string>& folders) {
@@ -111,51 +135,18 @@ std::vector<Recording> read_recordings(const std::vector<std::string>& folders) 
   return result;
 }
 
-ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
-  const std::vector<Recording> read = read_recordings(options.recordings);
-  Model model = read_model(options.model, read);
-  std::vector<DrivenRecording> recordings = with_wheels(read, model.robot);
-  check_stretches(read, options.exclude);
-  warn_of_mistakes(read, model, options.model);
-  PreparedRecordings prepared =
-      prepare_recordings(std::move(recordings), model, fit_options(options), options.every);
-  return {std::move(prepared), std::move(model)};
-}
-
-FitOptions fit_options(const ModelRecordingsOptions& options) {
-  const auto left_out = [&options](const char* what) {
-    return std::find(options.without.begin(), options.without.end(), what) != options.without.end();
-  };
-  FitOptions result = gated_fit(options.gate);
-  result.use_survey = !left_out("survey");
-  result.use_truth = !left_out("truth");
-  result.use_fixes = !left_out("fixes");
-  result.use_loops = !left_out("loops");
-  for (const std::string& text : options.exclude) {
-    const StretchOfTime one = parse_stretch(text);
-    const std::size_t place = one.recording.value_or(0);
-    if (result.excluded.size() <= place) result.excluded.resize(place + 1);
-    result.excluded[place].push_back(one.time);
-  }
-  return result;
-}
-
-CompareOptions compare_options(const ModelRecordingsOptions& options) {
-  return {fit_options(options), options.legs, options.level};
-}
-
 void add_stated_noise(const Command& command, ModelRecordingsOptions& options) {
   command.add_flag("--stated-noise", options.stated_noise,
                    "Judge by the noise that the model states, instead of estimating it");
 }
 
-DiagnoseOptions diagnose_options(const ModelRecordingsOptions& options) {
-  DiagnoseOptions result;
-  result.fit = fit_options(options);
-  result.legs = options.legs;
-  result.level = options.level;
-  result.estimate_noise = !options.stated_noise;
-  return result;
+Session read_session(const ModelRecordingsOptions& options) {
+  const std::vector<Recording> read = read_recordings(options.recordings);
+  Model model = read_model(options.model, read);
+  static_cast<void>(with_wheels(read, model.robot));  // what is wrong with them goes first
+  check_stretches(read, options.exclude);
+  warn_of_mistakes(read, model, options.model);
+  return open_session(read, std::move(model), session_options(options));
 }
 
 }  // namespace trussmap::app

@@ -5,9 +5,7 @@
 #pragma once
 
 #include "command_line.hpp"
-#include "trussmap/compare.hpp"
-#include "trussmap/diagnose.hpp"
-#include "trussmap/gate.hpp"
+#include "trussmap/session.hpp"
 
 #include <optional>
 #include <string>
@@ -39,21 +37,11 @@ void add_fitted_recordings(const Command& command, ModelRecordingsOptions& optio
 /// --stated-noise.
 void add_stated_noise(const Command& command, ModelRecordingsOptions& options);
 
-/// Recordings as the model given has them.
-struct ModelRecordings : PreparedRecordings {
-  Model model;
-};
-
 /// One recording per folder, in their order. Throws InputError.
 [[nodiscard]] std::vector<Recording> read_recordings(const std::vector<std::string>& folders);
 
-/// Reads them, and thins out frames whose errors last from one to the next (fit_model.hpp).
-/// Throws InputError, with the model file's line where an effect cannot be applied.
-[[nodiscard]] ModelRecordings read_model_recordings(const ModelRecordingsOptions& options);
-
-/// --without, --exclude and --gate; the effects are fitted.
-[[nodiscard]] FitOptions fit_options(const ModelRecordingsOptions& options);
-[[nodiscard]] CompareOptions compare_options(const ModelRecordingsOptions& options);
-[[nodiscard]] DiagnoseOptions diagnose_options(const ModelRecordingsOptions& options);
+/// Reads them, warns of mistakes, and prepares them as the options say (session.hpp). Throws
+/// InputError, with the model file's line where an effect cannot be applied.
+[[nodiscard]] Session read_session(const ModelRecordingsOptions& options);
 
 }  // namespace trussmap::app

@@ -11,6 +11,8 @@
 // keeps the line alive while the library works.
 #pragma once
 
+#include "trussmap/session.hpp"
+
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -21,10 +23,7 @@
 
 namespace trussmap::app {
 
-struct ProgressStep {
-  std::string what;    ///< "fitting the map"
-  double share = 1.0;  ///< of the time, roughly; any unit
-};
+using ProgressStep = Stage;
 
 /// Where a run of steps is. Without a terminal, so that it can be tested.
 class ProgressClock {

@@ -9,7 +9,7 @@
 #include "page_runtime.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/simulation.hpp"
-#include "trussmap/wall_distances.hpp"
+#include "trussmap/wheel_noise.hpp"
 
 #include <cstdint>
 #include <optional>

@@ -11,7 +11,6 @@
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
 #include "trussmap/umbmark.hpp"
-#include "trussmap/wall_distances.hpp"
 #include "trussmap/wheel_noise.hpp"
 #include "trussmap/write_files.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/wall_distances.hpp"
+#include "trussmap/wheel_noise.hpp"
 
 #include "geometry/units.hpp"
 

@@ -49,7 +49,7 @@ inline constexpr auto kDescribed<CatalogueEntry> = described(
           "coefficient from which on it is seen, roughly; 0: not known"),
     field("column", &CatalogueEntry::of_covariate, "goes with a column of the recording"),
     field("also_of", &CatalogueEntry::also_of, "channels that it is tried on, too"),
-    field("parameters", &CatalogueEntry::parameters));
+    field("parameters", &CatalogueEntry::parameters, "of the shape that are open"));
 
 /// An entry as the list has it.
 struct ListedEffect {
@@ -66,7 +66,7 @@ struct CatalogueReport {
   std::vector<ListedEffect> effects;
 };
 template <>
-inline constexpr auto kDescribed<CatalogueReport> = described(field("effects",
-                                                                    &CatalogueReport::effects));
+inline constexpr auto kDescribed<CatalogueReport> =
+    described(field("effects", &CatalogueReport::effects, "of the catalogue"));
 
 }  // namespace trussmap::results

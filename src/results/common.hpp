@@ -80,7 +80,10 @@ inline constexpr auto kDescribed<HeldOut> =
     described(field(
                   "legs", [](const HeldOut& one) { return one.legs.size(); },
                   "legs that no fit has seen"),
-              keys_of("metrics", [](const HeldOut& one) -> const HeldOutMetrics& { return one; }))
+              keys_of("metrics", [](const HeldOut& one) -> const HeldOutMetrics& { return one; }),
+              field("expected_rms_m", &HeldOut::expected_rms,
+                    "what arrival_rms_m would be if the model were right and its noise as large "
+                    "as it states"))
         .named("heldout");
 
 template <>
@@ -93,6 +96,15 @@ inline constexpr auto kDescribed<LookAlike> =
                     "apart, however alike it is"))
         .named("look_alike");
 
+/// What stays as it was, in words.
+[[nodiscard]] inline std::vector<std::string> not_fitted_in_words(const EffectEstimate& estimate) {
+  std::vector<std::string> lines;
+  for (const UnfittedCoefficient& one : estimate.not_fitted) {
+    lines.push_back(in_words(estimate, one));
+  }
+  return lines;
+}
+
 template <>
 inline constexpr auto kDescribed<EffectEstimate> =
     described(keys_of("effect", &EffectEstimate::effect),
@@ -100,7 +112,9 @@ inline constexpr auto kDescribed<EffectEstimate> =
               field("sd", &EffectEstimate::sd, "standard errors").or_null(),
               field(
                   "in_words",
-                  [](const EffectEstimate& one) { return in_words(one.effect, one.sd); }, kInWords))
+                  [](const EffectEstimate& one) { return in_words(one.effect, one.sd); }, kInWords),
+              field("not_fitted", not_fitted_in_words,
+                    "coefficients that these recordings cannot show, and why"))
         .named("estimate");
 
 template <>
@@ -116,7 +130,8 @@ inline constexpr auto kDescribed<Tolerance> =
     described(field("m", &Tolerance::most, "that --tolerance asks for"),
               field("arrival_rms_m", &Tolerance::arrival_rms,
                     "how far off held-out legs end, root mean square"),
-              field("legs", &Tolerance::legs, "held out"), field("passed", &Tolerance::passed))
+              field("legs", &Tolerance::legs, "held out"),
+              field("passed", &Tolerance::passed, "whether they end within it"))
         .named("tolerance", "absent where none is asked for");
 
 template <>
@@ -169,7 +184,7 @@ inline constexpr auto kDescribed<FittedNoise> =
     described(field("changed", &FittedNoise::changed, "whether it is other than the model states"),
               field("gain", &FittedNoise::gain, "fall of -2 log of the restricted likelihood"),
               field("tried", &FittedNoise::tried, "processes asked of").at_least(0.0),
-              field("sources", &FittedNoise::sources))
+              field("sources", &FittedNoise::sources, "white ones, then what lasts"))
         .named("noise_estimated");
 
 template <>
@@ -218,7 +233,7 @@ inline constexpr auto kDescribed<StackValue> =
               field("value", &StackValue::value, "in that program's unit"),
               field("multiplies", &StackValue::multiplies,
                     "what is there is to be multiplied by it; else it takes its place"),
-              field("note", &StackValue::note));
+              field("note", &StackValue::note, "how it is meant"));
 
 template <>
 inline constexpr auto kDescribed<RobotConstants> =

@@ -5,38 +5,32 @@
 #pragma once
 
 #include "results/common.hpp"
-#include "trussmap/discover.hpp"
-#include "trussmap/fit_model.hpp"
+#include "trussmap/session.hpp"
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace trussmap::results {
 
-/// What a command says beside its result.
-template <typename Result>
+/// What a command says beside a report.
+template <typename Report>
 struct Reported {
-  const Result* result = nullptr;
-  const std::vector<NoiseBudget>* noise_budget = nullptr;
+  const Report* report = nullptr;
   const std::vector<std::string>* notes = nullptr;
   std::optional<Tolerance> tolerance = std::nullopt;
 };
-template <typename Result>
-inline constexpr auto kDescribed<Reported<Result>> = described(
-    keys_of("result", &Reported<Result>::result),
-    field("tolerance", &Reported<Result>::tolerance).if_any(),
-    field(
-        "noise_budget",
-        [](const Reported<Result>& one) -> const std::vector<NoiseBudget>& {
-          return *one.noise_budget;
-        },
-        "what of dead reckoning's error by the wheels comes from which noise"),
+template <typename Report>
+inline constexpr auto kDescribed<Reported<Report>> = described(
+    keys_of("report", &Reported<Report>::report),
+    field("tolerance", &Reported<Report>::tolerance).if_any(),
     field(
         "notes",
-        [](const Reported<Result>& one) -> const std::vector<std::string>& { return *one.notes; },
+        [](const Reported<Report>& one) -> const std::vector<std::string>& { return *one.notes; },
         kOwnNotes));
+
+inline constexpr const char* kWhatBudget =
+    "what of dead reckoning's error by the wheels comes from which noise";
 
 // ----------------------------------------
 // compare.
@@ -53,7 +47,7 @@ inline constexpr auto kDescribed<LegMisfit> = described(
 template <>
 inline constexpr auto kDescribed<RouteMisfit> = described(
     field("from", &RouteMisfit::from, "landmark"), field("to", &RouteMisfit::to, "landmark"),
-    field("traversals", &RouteMisfit::traversals).at_least(0.0),
+    field("traversals", &RouteMisfit::traversals, "drives along it").at_least(0.0),
     field("chi2", &RouteMisfit::chi2, "sum"),
     field("force_per_m", &RouteMisfit::force,
           "in the bar, along it: gradient of chi2/2; + is tension"),
@@ -103,52 +97,41 @@ inline constexpr auto kDescribed<Comparison> = described(
     field("chi2", &Comparison::chi2, "of the fit with the model's coefficients"),
     field("dof", &Comparison::dof, "its degrees of freedom"),
     field("coefficients_estimated", &Comparison::coefficients, "in this fit").at_least(0.0),
-    share("p_value", &Comparison::p_value, "of chi2 as a whole"), field("legs", &Comparison::legs),
-    field("landmarks", &Comparison::landmarks), field("heldout", &Comparison::held_out),
+    share("p_value", &Comparison::p_value, "of chi2 as a whole"),
+    field("legs", &Comparison::legs, "of all recordings"),
+    field("landmarks", &Comparison::landmarks, "of the map"),
+    field("heldout", &Comparison::held_out,
+          "how well the model predicts legs that it has not seen"),
     field("worst", &Comparison::worst, "all legs, worst first"),
-    field("routes", &Comparison::routes), field("worst_landmarks", &Comparison::worst_landmarks),
-    field("trends", &Comparison::trends, "strongest first"), field("noise", &Comparison::sources),
-    field("outliers", &Comparison::outliers),
+    field("routes", &Comparison::routes, "the most strained first"),
+    field("worst_landmarks", &Comparison::worst_landmarks, "worst first"),
+    field("trends", &Comparison::trends, "strongest first"),
+    field("noise", &Comparison::sources, "how noisy each source is, against what is stated"),
+    field("outliers", &Comparison::outliers,
+          "measurements that the others contradict, most significant first"),
     field(
         "advice", [](const Comparison& one) { return in_words(one.lacks); },
         "what these data lack, and what that costs"),
-    field("sightings_used", &Comparison::sightings), field("warnings", &Comparison::warnings));
+    field("sightings_used", &Comparison::sightings, "how many of the sightings judge the model"),
+    field("warnings", &Comparison::warnings, "in words"));
+
+template <>
+inline constexpr auto kDescribed<ComparisonReport> =
+    described(keys_of("found", &ComparisonReport::found),
+              field("noise_budget", &ComparisonReport::noise_budget, kWhatBudget));
 
 // ----------------------------------------
 // fit.
-
-/// What stays as it was, in words.
-[[nodiscard]] inline std::vector<std::string> not_fitted_in_words(const EffectEstimate& estimate) {
-  std::vector<std::string> lines;
-  for (const UnfittedCoefficient& one : estimate.not_fitted) {
-    lines.push_back(in_words(estimate, one));
-  }
-  return lines;
-}
-
-/// An effect as fit has it.
-struct FittedEffect {
-  const EffectEstimate* estimate = nullptr;
-};
-template <>
-inline constexpr auto kDescribed<FittedEffect> = described(
-    keys_of("estimate", &FittedEffect::estimate),
-    field(
-        "not_fitted", [](const FittedEffect& one) { return not_fitted_in_words(*one.estimate); },
-        "coefficients that these recordings cannot show, and why"));
-
-[[nodiscard]] inline std::vector<FittedEffect> fitted_effects(const EffectGain& gain) {
-  std::vector<FittedEffect> effects;
-  for (const EffectEstimate& one : gain.with.effects) effects.push_back({&one});
-  return effects;
-}
 
 template <>
 inline constexpr auto kDescribed<EffectGain> = described(
     field("chi2", through(&EffectGain::with, &ModelFit::chi2), "with the effects fitted"),
     field("dof", through(&EffectGain::with, &ModelFit::dof), "its degrees of freedom"),
     share("p_value", through(&EffectGain::with, &ModelFit::p_value), "of chi2 as a whole"),
-    field("effects", fitted_effects), field("heldout", &EffectGain::held_out_with),
+    field("effects", through(&EffectGain::with, &ModelFit::effects),
+          "of the model, with their standard errors"),
+    field("heldout", &EffectGain::held_out_with,
+          "how well the fitted model predicts legs that it has not seen"),
     field("without_effects", described(field("chi2", through(&EffectGain::without, &ModelFit::chi2),
                                              "of the model without its effects"),
                                        field("dof", through(&EffectGain::without, &ModelFit::dof),
@@ -156,24 +139,12 @@ inline constexpr auto kDescribed<EffectGain> = described(
                                        field("heldout", &EffectGain::held_out_without))),
     field("predicted_decrease", &EffectGain::predicted_decrease,
           "of chi2, by the score test before the fit"),
-    field("warnings", through(&EffectGain::with, &ModelFit::warnings)));
+    field("warnings", through(&EffectGain::with, &ModelFit::warnings), "in words"));
 
-/// What fit says.
-struct FitReport {
-  const EffectGain* gain = nullptr;
-  const std::optional<FittedNoise>* noise = nullptr;
-  const std::vector<std::string>* notes = nullptr;
-  std::optional<Tolerance> tolerance = std::nullopt;
-};
 template <>
-inline constexpr auto kDescribed<FitReport> =
-    described(keys_of("gain", &FitReport::gain),
-              field(
-                  "noise", [](const FitReport& one) { return *one.noise; }, "with --noise")
-                  .if_any(),
-              field("tolerance", &FitReport::tolerance).if_any(),
-              field(
-                  "notes", [](const FitReport& one) { return *one.notes; }, kOwnNotes));
+inline constexpr auto kDescribed<FitReport> = described(
+    keys_of("gain", &FitReport::gain), field("noise", &FitReport::noise, "with --noise").if_any(),
+    keys_of("constants", &FitReport::constants));
 
 // ----------------------------------------
 // diagnose.
@@ -248,7 +219,8 @@ inline constexpr auto kDescribed<Diagnosis> = described(
     field("chi2", &Diagnosis::chi2, "of the model given"),
     field("dof", &Diagnosis::dof, "its degrees of freedom"),
     field("coefficients_estimated", &Diagnosis::coefficients, "in this fit").at_least(0.0),
-    field("heldout", &Diagnosis::held_out), field("tried", &Diagnosis::tried, "tests"),
+    field("heldout", &Diagnosis::held_out, "how well the model predicts legs that it has not seen"),
+    field("tried", &Diagnosis::tried, "tests"),
     field("candidates", &Diagnosis::findings, "best first"),
     field("noise", &Diagnosis::noise,
           "laws that explain what errors there are beyond what the model states, best first"),
@@ -260,8 +232,15 @@ inline constexpr auto kDescribed<Diagnosis> = described(
     field(
         "next_drive", [](const Diagnosis& one) { return in_words(one.next_drive); },
         "what to drive to tell the rivals apart"),
-    field("unobservable", &Diagnosis::unobservable), field("sightings_used", &Diagnosis::sightings),
-    field("warnings", &Diagnosis::warnings));
+    field("unobservable", &Diagnosis::unobservable, "what these data cannot show, and why"),
+    field("sightings_used", &Diagnosis::sightings, "how many of the sightings judge the model"),
+    field("warnings", &Diagnosis::warnings, "in words"));
+
+template <>
+inline constexpr auto kDescribed<DiagnosisReport> =
+    described(keys_of("found", &DiagnosisReport::found),
+              field("noise_budget", &DiagnosisReport::noise_budget, kWhatBudget),
+              keys_of("constants", &DiagnosisReport::constants));
 
 // ----------------------------------------
 // discover.
@@ -316,11 +295,13 @@ inline constexpr auto kDescribed<DiscoveryStep> = described(
             return step.added ? std::optional(Promised{&step}) : std::nullopt;
           })
         .if_any(),
-    field("indistinguishable_from", of_added<&DiscoveryStep::look_alikes>).if_any());
+    field("indistinguishable_from", of_added<&DiscoveryStep::look_alikes>,
+          "what it could be instead")
+        .if_any());
 
 template <>
 inline constexpr auto kDescribed<Discovery> = described(
-    field("steps", &Discovery::steps),
+    field("steps", &Discovery::steps, "models on the way, the one given first"),
     field(
         "stopped", [](const Discovery& one) { return stop_in_words(one); }, "why"),
     field(
@@ -330,7 +311,13 @@ inline constexpr auto kDescribed<Discovery> = described(
     field(
         "noise_estimated", [](const Discovery& one) { return noise_of(one.last); },
         "by which all is judged; null with --stated-noise"),
-    field("sightings_used", &Discovery::sightings),
-    field("warnings", through(&Discovery::found, &ModelFit::warnings)));
+    field("sightings_used", &Discovery::sightings, "how many of the sightings judge the models"),
+    field("warnings", through(&Discovery::found, &ModelFit::warnings), "in words"));
+
+template <>
+inline constexpr auto kDescribed<DiscoveryReport> =
+    described(keys_of("found", &DiscoveryReport::found),
+              field("noise_budget", &DiscoveryReport::noise_budget, kWhatBudget),
+              keys_of("constants", &DiscoveryReport::constants));
 
 }  // namespace trussmap::results

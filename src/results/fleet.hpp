@@ -40,10 +40,11 @@ inline constexpr auto kDescribed<FleetGroup> =
               share("p_value", &FleetGroup::p_value, "that they are as the others"));
 
 template <>
-inline constexpr auto kDescribed<FleetKey> = described(
-    field("key", &FleetKey::key, "of the metadata"),
-    share("p_adjusted", &FleetKey::p_adjusted, "over the keys"), field("groups", &FleetKey::groups),
-    field("same_as", &FleetKey::same_as, "keys that divide the robots the same way"));
+inline constexpr auto kDescribed<FleetKey> =
+    described(field("key", &FleetKey::key, "of the metadata"),
+              share("p_adjusted", &FleetKey::p_adjusted, "over the keys"),
+              field("groups", &FleetKey::groups, "robots with the same value"),
+              field("same_as", &FleetKey::same_as, "keys that divide the robots the same way"));
 
 template <>
 inline constexpr auto kDescribed<FleetCoefficient> = described(
@@ -61,7 +62,8 @@ inline constexpr auto kDescribed<FleetCoefficient> = described(
     field("sd_slope_per_day", &FleetCoefficient::slope_sd, "its standard error").or_null(),
     share("p_slope", &FleetCoefficient::p_slope, "that it is 0"),
     field("all_drift", &FleetCoefficient::all_drift, "significant"),
-    field("goes_with", &FleetCoefficient::goes_with), field("each", &FleetCoefficient::members));
+    field("goes_with", &FleetCoefficient::goes_with, "keys of the metadata that set robots apart"),
+    field("each", &FleetCoefficient::members, "the robots, each with its own estimate"));
 
 template <>
 inline constexpr auto kDescribed<FleetLookAlike> =
@@ -69,13 +71,13 @@ inline constexpr auto kDescribed<FleetLookAlike> =
               field("cosine", &FleetLookAlike::cosine, "of both traces"));
 
 template <>
-inline constexpr auto kDescribed<FleetFinding> =
-    described(field("effect", &FleetFinding::effect, "name, as in the catalogue, or of a formula"),
-              field("channel", &FleetFinding::channel, kWhatChannel),
-              field("of_model", &FleetFinding::of_model, "the models have it"),
-              share("p_adjusted", &FleetFinding::p_adjusted, "over all that was tried"),
-              field("coefficients", &FleetFinding::coefficients, "one per shape"),
-              field("indistinguishable_from", &FleetFinding::look_alikes));
+inline constexpr auto kDescribed<FleetFinding> = described(
+    field("effect", &FleetFinding::effect, "name, as in the catalogue, or of a formula"),
+    field("channel", &FleetFinding::channel, kWhatChannel),
+    field("of_model", &FleetFinding::of_model, "the models have it"),
+    share("p_adjusted", &FleetFinding::p_adjusted, "over all that was tried"),
+    field("coefficients", &FleetFinding::coefficients, "one per shape"),
+    field("indistinguishable_from", &FleetFinding::look_alikes, "what would leave the same trace"));
 
 template <>
 inline constexpr auto kDescribed<PooledTest> =
@@ -85,17 +87,18 @@ inline constexpr auto kDescribed<PooledTest> =
               field("score", &PooledTest::score, "chi2 that adding it would take away"),
               field("dof", &PooledTest::dof, "of it").at_least(0.0),
               share("p_value", &PooledTest::p_value, "alone"),
-              field("coefficients", &PooledTest::coefficients).or_null(),
+              field("coefficients", &PooledTest::coefficients, "over all robots").or_null(),
               field("sd", &PooledTest::sd, "standard errors").or_null());
 
 template <>
-inline constexpr auto kDescribed<FleetReport> =
-    described(field("robots", &FleetReport::robots), field("days", &FleetReport::days),
-              field("chi2", &FleetReport::chi2, "sum"), field("dof", &FleetReport::dof, "sum"),
-              share("level", &FleetReport::level, "of significance"),
-              field("keys", &FleetReport::keys, "of the metadata, that were tested"),
-              field("findings", &FleetReport::findings), field("pooled_tests", &FleetReport::tests),
-              field("heldout_rms_m", &FleetReport::held_out_rms, "by robot"),
-              field("notes", &FleetReport::notes));
+inline constexpr auto kDescribed<FleetReport> = described(
+    field("robots", &FleetReport::robots, "how many"),
+    field("days", &FleetReport::days, "of all robots"), field("chi2", &FleetReport::chi2, "sum"),
+    field("dof", &FleetReport::dof, "sum"), share("level", &FleetReport::level, "of significance"),
+    field("keys", &FleetReport::keys, "of the metadata, that were tested"),
+    field("findings", &FleetReport::findings, "the models' own effects, then what is found"),
+    field("pooled_tests", &FleetReport::tests, "of every candidate alone"),
+    field("heldout_rms_m", &FleetReport::held_out_rms, "by robot"),
+    field("notes", &FleetReport::notes, "in words"));
 
 }  // namespace trussmap::results

@@ -76,7 +76,7 @@ inline constexpr auto kDescribed<MapQuality> = described(
     field("misclosure_share", &MapQuality::misclosure_share,
           "by how much dead reckoning misses a loop's start, as a share of the way: median")
         .or_null(),
-    field("sightings", &MapQuality::sightings).at_least(0.0),
+    field("sightings", &MapQuality::sightings, "of all landmarks").at_least(0.0),
     field("left_out_share", &MapQuality::left_out_share,
           "of the sightings; where there are none, of fixes and loops"),
     field("from_adjusted_rms_m", &MapQuality::from_adjusted, "distance from the adjustment's map"));
@@ -178,8 +178,10 @@ inline constexpr auto kDescribed<BuiltPath> =
               field("worst_t", &BuiltPath::worst_t, "s, when"),
               field("dead_reckoning_off_rms_m", &BuiltPath::rms_dead_reckoning,
                     "distance of dead reckoning from the path"),
-              field("fixes", ties_of<false>), field("loops", ties_of<true>),
-              field("left_out", left_out_of), field("truth", &BuiltPath::on_truth).if_any());
+              field("fixes", ties_of<false>, "positions measured on the way"),
+              field("loops", ties_of<true>, "poses measured from one time to another"),
+              field("left_out", left_out_of, "fixes and loops that contradict the others"),
+              field("truth", &BuiltPath::on_truth, "the path beside the truth").if_any());
 
 // ----------------------------------------
 // The map.

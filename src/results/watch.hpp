@@ -13,7 +13,7 @@ namespace trussmap::results {
 
 template <>
 inline constexpr auto kDescribed<MonitorLookAlike> = described(
-    field("effect", &MonitorLookAlike::name),
+    field("effect", &MonitorLookAlike::name, "its name"),
     field("cosine", &MonitorLookAlike::cosine, "between what both add to the innovations"),
     share("share", &MonitorLookAlike::share, "of the evidence"));
 
@@ -29,15 +29,16 @@ inline constexpr auto kDescribed<FoundEffect> =
         field("earliest_leg", &FoundEffect::earliest,
               "it began between these two, as far as 90 % of the evidence goes")
             .at_least(1.0),
-        field("latest_leg", &FoundEffect::latest).at_least(1.0),
-        field("indistinguishable_from", &FoundEffect::look_alikes))
+        field("latest_leg", &FoundEffect::latest, "likewise").at_least(1.0),
+        field("indistinguishable_from", &FoundEffect::look_alikes, "effects that look the same"))
         .named("watch_found");
 
 template <>
-inline constexpr auto kDescribed<WatchedLeg> = described(
-    field("leg", &WatchedLeg::leg).at_least(1.0), field("t", &WatchedLeg::t, "s, at its end"),
-    field("end", &WatchedLeg::end, "the landmark; empty by a fix or a truth row"),
-    field("evidence", &WatchedLeg::evidence).at_least(0.0));
+inline constexpr auto kDescribed<WatchedLeg> =
+    described(field("leg", &WatchedLeg::leg, "its number, from 1").at_least(1.0),
+              field("t", &WatchedLeg::t, "s, at its end"),
+              field("end", &WatchedLeg::end, "the landmark; empty by a fix or a truth row"),
+              field("evidence", &WatchedLeg::evidence, "of a change, after it").at_least(0.0));
 
 /// The first alarm, as it was given.
 struct FirstAlarm {
@@ -98,6 +99,6 @@ inline constexpr auto kDescribed<WatchReport> = described(
         .if_any(),
     field("passed_over", kWatched<&Watch::passed_over>, "sightings by a range or a bearing alone")
         .at_least(0.0),
-    field("each_leg", kWatched<&Watch::legs>));
+    field("each_leg", kWatched<&Watch::legs>, "the evidence after each leg"));
 
 }  // namespace trussmap::results

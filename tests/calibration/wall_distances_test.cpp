@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/wall_distances.hpp"
 
 #include "trussmap/simulation.hpp"
 #include "trussmap/wheel_noise.hpp"
