@@ -34,6 +34,7 @@ class BuildByCMake(build_ext):
         jobs = str(os.cpu_count() or 1)
         subprocess.check_call(["cmake", "--build", str(build), "--parallel", jobs,
                                "--target", "trussmap_python"])
+        subprocess.check_call([sys.executable, str(HERE / "make_stubs.py"), str(module.parent)])
 
 
 setup(

@@ -208,9 +208,10 @@ struct Comparison {
   std::string missing;  ///< the effect that speaks against it
   double chi2 = 0.0;
   int dof = 0;
-  int coefficients = 0;     ///< estimated in this fit, each at the cost of a degree of freedom
-  double p_value = 1.0;     ///< of chi^2 as a whole
-  UsedSightings sightings;  ///< of prepared recordings
+  int coefficients = 0;          ///< estimated in this fit, each at the cost of a degree of freedom
+  double p_value = 1.0;          ///< of chi^2 as a whole
+  double level = kSignificance;  ///< by which it was judged
+  UsedSightings sightings;       ///< of prepared recordings
   std::size_t legs = 0;
   std::size_t landmarks = 0;
   HeldOut held_out;

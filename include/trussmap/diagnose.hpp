@@ -162,6 +162,7 @@ struct Diagnosis {
   Objection objection = Objection::none;  ///< what an unexplained misfit shows in
   std::string missing;                    ///< name of the first finding, if it is missing
   double p_value = 1.0;                   ///< its, adjusted; else of chi^2
+  double level = kSignificance;           ///< by which it was judged
   double chi2 = 0.0;
   int dof = 0;
   int coefficients = 0;           ///< estimated in this fit

@@ -227,7 +227,7 @@ void add_store(py::module_& module) {
 }  // namespace
 
 void add_map_builder(py::module_& module) {
-  RowClass<Arrival>(module, "Arrival", "Arrival")
+  RowClass<Arrival>(module, "Arrival")
       .value(
           "kind", [](const Arrival& self) { return name_of(self.kind); },
           "new landmark, loop closed, new route, known route, left out or found again.")
@@ -237,7 +237,7 @@ void add_map_builder(py::module_& module) {
       .field("largest_move", &Arrival::largest_move)
       .field("eta", &Arrival::eta)
       .field("back", &Arrival::back)
-      .aside("misfit", [](const Arrival& self) { return array_of(self.misfit); });
+      .value("misfit", [](const Arrival& self) { return array_of(self.misfit); });
   py::class_<MapBuilder> type(module, "MapBuilder",
                               "Corrects the map at every landmark that the robot reaches. A leg is "
                               "a displacement [m, map axes] with its covariance [m^2, 2 x 2].");

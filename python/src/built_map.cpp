@@ -8,6 +8,7 @@
 #include "maps.hpp"
 #include "parts.hpp"
 #include "results.hpp"
+#include "results/maps.hpp"
 #include "rows.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/map_files.hpp"
@@ -87,38 +88,15 @@ py::array points(const std::vector<Vector2>& path) {
 }
 
 void add_rows(py::module_& module) {
-  RowClass<RejectedSighting>(module, "RejectedSighting", "RejectedSighting")
-      .field("recording", &RejectedSighting::recording)
-      .field("t", &RejectedSighting::t)
-      .field("landmark", &RejectedSighting::landmark)
-      .field("misfit", &RejectedSighting::misfit);
-  RowClass<FreedError>(module, "FreedError", "FreedError")
-      .field("effect", &FreedError::effect)
-      .field("sd", &FreedError::sd)
+  RowClass<RejectedSighting>(module, "RejectedSighting");
+  RowClass<FreedError>(module, "FreedError")
       .value(
           "in_words", [](const FreedError& self) { return in_words(self.effect, self.sd); },
           "In a sentence.");
-  RowClass<MapQuality>(module, "MapQuality", "MapQuality")
-      .field("median_sd", &MapQuality::median_sd)
-      .field("worst_sd", &MapQuality::worst_sd)
-      .field("worst_landmark", &MapQuality::worst_landmark)
-      .field("oriented", &MapQuality::oriented)
-      .field("median_sd_heading", &MapQuality::median_sd_heading)
-      .field("dispersion", &MapQuality::dispersion)
-      .field("loops", &MapQuality::loops)
-      .field("misclosure_share", &MapQuality::misclosure_share)
-      .field("sightings", &MapQuality::sightings)
-      .field("left_out_share", &MapQuality::left_out_share)
-      .field("from_adjusted", &MapQuality::from_adjusted);
-  RowClass<BuiltPath>(module, "BuiltPath", "BuiltPath")
-      .field("recording", &BuiltPath::recording)
-      .field("length", &BuiltPath::length)
-      .field("rms_dead_reckoning", &BuiltPath::rms_dead_reckoning)
-      .field("median_sd", &BuiltPath::median_sd)
-      .field("worst_sd", &BuiltPath::worst_sd)
-      .field("worst_t", &BuiltPath::worst_t)
-      .aside("adjusted", [](const BuiltPath& self) { return points(self.adjusted); })
-      .aside("dead_reckoned", [](const BuiltPath& self) { return points(self.dead_reckoned); });
+  RowClass<MapQuality>(module, "MapQuality");
+  RowClass<BuiltPath>(module, "BuiltPath")
+      .value("adjusted", [](const BuiltPath& self) { return points(self.adjusted); })
+      .value("dead_reckoned", [](const BuiltPath& self) { return points(self.dead_reckoned); });
 }
 
 template <auto kMember>

@@ -40,7 +40,7 @@ bool was_interrupted() {
   return PyErr_CheckSignals() != 0;
 }
 
-CallProgress::CallProgress(py::object callback, std::vector<CallStep> steps)
+CallProgress::CallProgress(py::object callback, std::vector<Stage> steps)
     : callback_(std::move(callback)), steps_(std::move(steps)) {
   if (!callback_.is_none() && PyCallable_Check(callback_.ptr()) == 0) {
     throw py::type_error("progress: expected a function of (what, done), or None");

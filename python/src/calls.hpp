@@ -5,6 +5,7 @@
 #pragma once
 
 #include "trussmap/running.hpp"
+#include "trussmap/session.hpp"
 
 #include <cstddef>
 #include <pybind11/pybind11.h>
@@ -46,16 +47,11 @@ auto unlocked(Work&& work) -> decltype(work()) {
   }
 }
 
-struct CallStep {
-  std::string what;    ///< "fitting the map"
-  double share = 1.0;  ///< of the time, roughly; any unit
-};
-
 /// Tells a callback progress(what, done): the step that begins, and which share of the call has
 /// been done before it, 0 to 1. May be called with the interpreter unlocked.
 class CallProgress {
  public:
-  CallProgress(py::object callback, std::vector<CallStep> steps);
+  CallProgress(py::object callback, std::vector<Stage> steps);
 
   void next();
   /// Within the present step.
@@ -68,7 +64,7 @@ class CallProgress {
   void tell(const std::string& what, double done);
 
   py::object callback_;
-  std::vector<CallStep> steps_;
+  std::vector<Stage> steps_;
   std::size_t begun_ = 0;
 };
 

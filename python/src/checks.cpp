@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // check.
+#include "results/checks.hpp"
+
 #include "calls.hpp"
 #include "inputs.hpp"
 #include "parts.hpp"
@@ -30,12 +32,7 @@ CheckResult run_check(const py::object& recordings, const py::object& model) {
 }  // namespace
 
 void add_check(py::module_& module) {
-  RowClass<CheckFinding>(module, "CheckFinding", "CheckFinding")
-      .field("file", &CheckFinding::file)
-      .field("column", &CheckFinding::column)
-      .field("kind", &CheckFinding::kind)
-      .field("evidence", &CheckFinding::evidence)
-      .field("remedy", &CheckFinding::remedy);
+  RowClass<CheckFinding>(module, "CheckFinding");
   py::class_<CheckResult>(module, "Check", "Mistakes of meaning in recordings.")
       .def_property_readonly(
           "findings", [](const CheckResult& self) { return py::tuple(py::cast(self.findings)); },

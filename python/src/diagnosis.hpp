@@ -16,11 +16,9 @@
 namespace trussmap::python {
 
 struct DiagnosisResult {
-  Diagnosis found;
-  ModelFit fit;
-  std::vector<NoiseBudget> budget;
+  DiagnosisReport report;
+  Model model;  ///< that was diagnosed
   Prepared input;
-  DiagnoseOptions how;
   std::size_t list = 8;
   Lazy<DiagnosisEvidence> evidence;
 };

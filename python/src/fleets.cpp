@@ -7,6 +7,7 @@
 #include "fits.hpp"
 #include "parts.hpp"
 #include "results.hpp"
+#include "results/fleet.hpp"
 #include "rows.hpp"
 #include "trussmap/fleet.hpp"
 #include "trussmap/model_file.hpp"
@@ -26,14 +27,14 @@ FleetRow row_of(const std::string& robot, const py::object& date, const py::obje
                 std::optional<double> every, double holdout, double min_drive, double leg) {
   if (robot.empty()) throw py::value_error("robot: expected a name");
   const Given given = python::given(recordings, model);
-  UseOptions use = use_options(without, gate, every, holdout, min_drive, leg, kSignificance);
+  SessionOptions use = use_options(without, gate, every, holdout, min_drive, leg, kSignificance);
   use.fit.excluded = excluded_of(exclude, given.held.size());
   const std::string day = py::str(date).cast<std::string>();  // a datetime.date, too
   const Prepared input = unlocked([&] { return prepared(given, use); });
   warn(input.mistakes);
   return unlocked([&] {
-    FleetRow row = fleet_row(robot, day, *input.recordings, input.model, format_model(input.model),
-                             use.fit, use.legs);
+    FleetRow row = fleet_row(robot, day, input.recordings(), input.model(),
+                             format_model(input.model()), use.fit, use.legs);
     row.metadata = metadata;
     return row;
   });
@@ -121,78 +122,17 @@ py::list table(const FleetResult& self, const std::string& what) {
 }
 
 void add_rows(py::module_& module) {
-  RowClass<FleetRobot>(module, "FleetRobot", "FleetRobot")
-      .field("robot", &FleetRobot::robot)
-      .field("days", &FleetRobot::days)
-      .field("value", &FleetRobot::value)
-      .field("sd", &FleetRobot::sd)
-      .field("shrunken", &FleetRobot::shrunken)
-      .field("shrunken_sd", &FleetRobot::shrunken_sd)
-      .field("differs", &FleetRobot::differs)
-      .field("p_differs", &FleetRobot::p_differs)
-      .field("drifts", &FleetRobot::drifts)
-      .field("slope", &FleetRobot::slope)
-      .field("slope_sd", &FleetRobot::slope_sd)
-      .field("p_drifts", &FleetRobot::p_drifts);
-  RowClass<FleetGroup>(module, "FleetGroup", "FleetGroup")
-      .field("value", &FleetGroup::value)
-      .field("robots", &FleetGroup::robots)
-      .field("mean", &FleetGroup::mean)
-      .field("sd", &FleetGroup::sd)
-      .field("p_value", &FleetGroup::p_value);
-  RowClass<FleetKey>(module, "FleetKey", "FleetKey")
-      .field("key", &FleetKey::key)
-      .field("p_adjusted", &FleetKey::p_adjusted)
-      .field("same_as", &FleetKey::same_as)
-      .aside("groups", [](const FleetKey& self) { return py::tuple(py::cast(self.groups)); });
-  RowClass<FleetCoefficient>(module, "FleetCoefficient", "FleetCoefficient")
-      .field("shape", &FleetCoefficient::shape)
-      .field("robots", &FleetCoefficient::robots)
-      .field("mean", &FleetCoefficient::mean)
-      .field("sd", &FleetCoefficient::sd)
-      .field("p_common", &FleetCoefficient::p_common)
-      .field("common", &FleetCoefficient::common)
-      .field("tau", &FleetCoefficient::tau)
-      .field("p_tau", &FleetCoefficient::p_tau)
-      .field("slope", &FleetCoefficient::slope)
-      .field("slope_sd", &FleetCoefficient::slope_sd)
-      .field("p_slope", &FleetCoefficient::p_slope)
-      .field("all_drift", &FleetCoefficient::all_drift)
-      .aside("goes_with",
-             [](const FleetCoefficient& self) { return py::tuple(py::cast(self.goes_with)); })
-      .aside(
-          "members", [](const FleetCoefficient& self) { return py::tuple(py::cast(self.members)); },
-          "The robots, each with its own estimate.");
-  RowClass<FleetFinding>(module, "FleetFinding", "FleetFinding")
-      .field("effect", &FleetFinding::effect)
-      .field("channel", &FleetFinding::channel)
-      .field("of_model", &FleetFinding::of_model)
-      .field("p_adjusted", &FleetFinding::p_adjusted)
-      .aside("coefficients",
-             [](const FleetFinding& self) { return py::tuple(py::cast(self.coefficients)); })
-      .aside(
-          "look_alikes",
-          [](const FleetFinding& self) {
-            py::list pairs;
-            for (const FleetLookAlike& one : self.look_alikes) {
-              pairs.append(py::make_tuple(one.effect, one.cosine));
-            }
-            return py::tuple(pairs);
-          },
-          "What would leave the same trace: effect, cosine.");
-  RowClass<PooledTest>(module, "PooledTest", "PooledTest")
-      .field("effect", &PooledTest::effect)
-      .field("channel", &PooledTest::channel)
-      .field("shape", &PooledTest::shape)
-      .field("score", &PooledTest::score)
-      .field("dof", &PooledTest::dof)
-      .field("p_value", &PooledTest::p_value)
-      .field("coefficients", &PooledTest::coefficients)
-      .field("sd", &PooledTest::sd);
+  RowClass<FleetRobot>(module, "FleetRobot");
+  RowClass<FleetGroup>(module, "FleetGroup");
+  RowClass<FleetKey>(module, "FleetKey");
+  RowClass<FleetCoefficient>(module, "FleetCoefficient");
+  RowClass<FleetLookAlike>(module, "FleetLookAlike");
+  RowClass<FleetFinding>(module, "FleetFinding");
+  RowClass<PooledTest>(module, "PooledTest");
 }
 
 void add_day(py::module_& module) {
-  RowClass<FleetRow>(module, "FleetRow", "FleetRow")
+  RowClass<FleetRow>(module, "FleetRow")
       .field("robot", &FleetRow::robot)
       .field("date", &FleetRow::date)
       .field("metadata", &FleetRow::metadata)
@@ -201,13 +141,13 @@ void add_day(py::module_& module) {
       .field("dof", &FleetRow::dof)
       .field("held_out_legs", &FleetRow::held_out_legs)
       .field("held_out_rms", &FleetRow::held_out_rms)
-      .aside(
+      .value(
           "g", [](const FleetRow& self) { return array_of(self.g); },
           "Whitened columns times residuals, an entry per column.")
-      .aside(
+      .value(
           "S", [](const FleetRow& self) { return array_of(self.S); },
           "Whitened columns times each other, a row and a column per column.")
-      .aside(
+      .value(
           "columns",
           [](const FleetRow& self) {
             py::list names;
@@ -232,29 +172,13 @@ void add_day(py::module_& module) {
 }
 
 void add_report(py::module_& module) {
-  const auto get = [](auto member) {
-    return [member](const FleetResult& self) { return self.found.*member; };
-  };
   py::class_<FleetResult> type(module, "FleetReport",
                                "What robots of a fleet have in common, which differ, which drift.");
   show(type, text, page);
-  type.def_property_readonly("robots", get(&FleetReport::robots), "How many.")
-      .def_property_readonly("days", get(&FleetReport::days), "How many, of all robots.")
-      .def_property_readonly("chi2", get(&FleetReport::chi2), "Of all days.")
-      .def_property_readonly("dof", get(&FleetReport::dof), "Its degrees of freedom.")
-      .def_property_readonly("level", get(&FleetReport::level), "Of significance.")
-      .def_property_readonly(
-          "findings",
-          [](const FleetResult& self) { return py::tuple(py::cast(self.found.findings)); },
-          doc("FleetReport.findings"))
-      .def_property_readonly(
-          "tests", [](const FleetResult& self) { return py::tuple(py::cast(self.found.tests)); },
-          doc("FleetReport.tests"))
-      .def_property_readonly("keys", get(&FleetReport::keys), doc("FleetReport.keys"))
-      .def_property_readonly("notes", get(&FleetReport::notes), "In words.")
-      .def_property_readonly("held_out_rms", get(&FleetReport::held_out_rms),
-                             doc("FleetReport.held_out_rms"))
-      .def("table", table, py::arg("what") = "findings",
+  add_fields<FleetResult, FleetReport>(
+      type, results::kDescribed<FleetReport>,
+      [](const FleetResult& self) -> const FleetReport& { return self.found; });
+  type.def("table", table, py::arg("what") = "findings",
            "A list of dicts: findings, robots, groups or tests.")
       .def("__repr__", [](const FleetResult& self) {
         return "<trussmap.FleetReport of " + std::to_string(self.found.robots) +

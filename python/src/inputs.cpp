@@ -57,20 +57,6 @@ std::vector<TimeSpan> spans_of(py::handle spans) {
   return result;
 }
 
-/// Times to leave out have to be times of the drive: a wrong unit must not be ignored in silence.
-void check_excluded(const std::vector<Recording>& recordings, const FitOptions& fit) {
-  for (std::size_t k = 0; k < fit.excluded.size(); ++k) {
-    const Drive& drive = recordings[k].drive;
-    if (drive.rows() == 0) continue;
-    for (const TimeSpan& one : fit.excluded[k]) {
-      if (one.from < drive.t.back() && one.to > drive.start()) continue;
-      throw std::invalid_argument(fmt::format(
-          "exclude: {} lasts from {:g} s to {:g} s, and {:g} to {:g} s is no part of it",
-          recordings[k].name, drive.start(), drive.t.back(), one.from, one.to));
-    }
-  }
-}
-
 }  // namespace
 
 Given given(py::handle recordings, py::handle model, bool may_lack) {
@@ -107,16 +93,16 @@ Read read(const Given& given) {
   return result;
 }
 
-UseOptions use_options(const std::vector<std::string>& without, double gate,
-                       std::optional<double> every, double holdout, double min_drive, double leg,
-                       double level) {
+SessionOptions use_options(const std::vector<std::string>& without, double gate,
+                           std::optional<double> every, double holdout, double min_drive,
+                           double leg, double level) {
   require(gate >= 0.0, "gate: expected 0 (none) or more standard deviations");
   require(!every || *every >= 0.0, "every: expected 0 (all frames) or more seconds");
   require(holdout >= 0.0 && holdout <= 0.9, "holdout: expected a share from 0 to 0.9");
   require(min_drive >= 0.0, "min_drive: expected 0 or more metres");
   require(leg > 0.0, "leg: expected more than 0 metres");
   require(level >= 1e-6 && level <= 0.5, "level: expected a level from 1e-6 to 0.5");
-  UseOptions use;
+  SessionOptions use;
   use.fit = gated_fit(gate);
   for (const std::string& one : without) {
     bool* used = one == "survey"  ? &use.fit.use_survey
@@ -145,24 +131,14 @@ std::vector<std::vector<TimeSpan>> excluded_of(py::handle exclude, std::size_t r
   return result;
 }
 
-void take_rows(Prepared& input) {
-  input.recordings = {input.rows, &input.rows->recordings};
-  input.notes = input.rows->notes;
-}
-
-Prepared prepared(const Given& given, const UseOptions& use) {
+Prepared prepared(const Given& given, const SessionOptions& use) {
   Read input = read(given);
-  check_excluded(input.recordings, use.fit);
   Prepared result;
+  result.session = std::make_shared<Session>(open_session(input.recordings, input.model, use));
   for (const CheckFinding& one :
        check_read_recordings(input.recordings, &input.model, input.model_name)) {
     result.mistakes.push_back(in_words(one));
   }
-  result.rows = std::make_shared<PreparedRecordings>(
-      prepare_recordings(with_wheels(std::move(input.recordings), input.model.robot), input.model,
-                         use.fit, use.every));
-  take_rows(result);
-  result.model = std::move(input.model);
   result.subject = subject_of(given);
   return result;
 }

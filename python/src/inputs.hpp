@@ -4,12 +4,7 @@
 // What calls take: recordings and a model, from objects or from files, and what of them to use.
 #pragma once
 
-#include "trussmap/check.hpp"
-#include "trussmap/compare.hpp"
-#include "trussmap/diagnose.hpp"
-#include "trussmap/gate.hpp"
-#include "trussmap/model.hpp"
-#include "trussmap/recording.hpp"
+#include "trussmap/session.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -46,24 +41,16 @@ struct Read {
 
 /// Read, checked and prepared for a fit.
 struct Prepared {
-  std::shared_ptr<PreparedRecordings> rows;                        ///< as the model has them
-  std::shared_ptr<const std::vector<DrivenRecording>> recordings;  ///< those of them that are used
-  Model model;
-  std::vector<std::string> notes;
+  std::shared_ptr<Session> session;
   std::vector<std::string> mistakes;  ///< what check_recordings finds, in words
   std::string subject;                ///< recordings and model, for a page
-};
 
-/// What compare, fit, diagnose and discover have in common.
-struct UseOptions {
-  FitOptions fit;
-  LegOptions legs;
-  std::optional<double> every;
-  double level = kSignificance;
+  [[nodiscard]] const std::vector<DrivenRecording>& recordings() const {
+    return session->rows.recordings;
+  }
+  [[nodiscard]] const std::vector<std::string>& notes() const { return session->rows.notes; }
+  [[nodiscard]] const Model& model() const { return session->model; }
 };
-
-/// What a call has made of `rows` is what is used.
-void take_rows(Prepared& input);
 
 /// What these options are, for docstrings.
 inline constexpr const char* kUseDoc =
@@ -78,9 +65,9 @@ inline constexpr const char* kUseDoc =
     "step's name and the share of the call that is done.";
 
 /// ValueError on what is out of range, or a name in `without` that is none.
-[[nodiscard]] UseOptions use_options(const std::vector<std::string>& without, double gate,
-                                     std::optional<double> every, double holdout, double min_drive,
-                                     double leg, double level);
+[[nodiscard]] SessionOptions use_options(const std::vector<std::string>& without, double gate,
+                                         std::optional<double> every, double holdout,
+                                         double min_drive, double leg, double level);
 
 /// Times that a fit leaves out: of one recording pairs (from, to) [s], of several a list of such
 /// lists, one per recording; None: none. TypeError, ValueError on another form.
@@ -88,7 +75,7 @@ inline constexpr const char* kUseDoc =
                                                              std::size_t recordings);
 
 /// Touches no Python. std::invalid_argument where times to leave out are none of the recording's.
-[[nodiscard]] Prepared prepared(const Given& given, const UseOptions& use);
+[[nodiscard]] Prepared prepared(const Given& given, const SessionOptions& use);
 
 /// As Python warnings, of the category trussmap.RecordingWarning.
 void warn(const std::vector<std::string>& mistakes);

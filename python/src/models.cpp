@@ -5,6 +5,7 @@
 #include "docs.hpp"
 #include "inputs.hpp"
 #include "parts.hpp"
+#include "results/catalogue.hpp"
 #include "rows.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/model_file.hpp"
@@ -205,16 +206,7 @@ void add_effect(py::module_& module) {
                          : in_words(self, std::vector<double>(self.coefficients.size())));
            })
       .def("__repr__", [](const Effect& self) { return repr(self); });
-  RowClass<CatalogueEntry>(module, "CatalogueEntry", "CatalogueEntry")
-      .value("name", [](const CatalogueEntry& self) { return std::string(self.name); })
-      .value(
-          "channel", [](const CatalogueEntry& self) { return std::string(name_of(self.channel)); },
-          "Where it acts.")
-      .value("pattern", [](const CatalogueEntry& self) { return self.pattern; })
-      .value("cause", [](const CatalogueEntry& self) { return std::string(self.cause); })
-      .value("remedy", [](const CatalogueEntry& self) { return std::string(self.remedy); })
-      .value("unit", [](const CatalogueEntry& self) { return std::string(self.unit); })
-      .field("detectable", &CatalogueEntry::detectable);
+  RowClass<CatalogueEntry>(module, "CatalogueEntry");
   module.def(
       "catalogue", [] { return py::tuple(py::cast(catalogue())); },
       "The named physical effects: channel and shape, what causes each and what helps.");

@@ -3,6 +3,7 @@
 //
 // The module trussmap._core; trussmap/__init__.py gives its names out.
 #include "parts.hpp"
+#include "stubs.hpp"
 #include "trussmap/running.hpp"
 
 #include <string>
@@ -32,6 +33,8 @@ PYBIND11_MODULE(_core, module) {
   trussmap::python::add_pose_graph(module);
   trussmap::python::add_map_builder(module);
   trussmap::python::add_corrected_odometry(module);
+  module.def("_stub_lines", &trussmap::python::stub_lines,
+             "What make_stubs.py writes of classes whose attributes are lists of fields.");
   module.def("set_threads", &trussmap::set_threads, py::arg("threads"),
              "For calls from now on; the figures are the same, whatever their number.");
   module.def("threads", &trussmap::threads, "On how many threads calls work; 1 until it is set.");

@@ -32,9 +32,9 @@ Poses run_apply(const py::object& recording, const py::object& model, bool adjus
   const Given given = python::given(recording, model);
   if (given.held.size() != 1) throw py::value_error("recording: expected one");
   const LegOptions legs;
-  const UseOptions use =
+  const SessionOptions use =
       use_options(without, gate, 0.0, legs.share, legs.min_drive, legs.leg, kSignificance);
-  std::vector<CallStep> steps{{"reading", 1}, {"reckoning", 1}};
+  std::vector<Stage> steps{{"reading", 1}, {"reckoning", 1}};
   if (adjusted) steps = {{"reading", 1}, {"fitting", 10}};
   CallProgress told(progress, steps);
   Poses result;
@@ -44,16 +44,16 @@ Poses run_apply(const py::object& recording, const py::object& model, bool adjus
     told.next();
     Prepared input = prepared(given, use);
     mistakes = input.mistakes;
-    result.noise = input.model.noise;
-    result.warnings = unfitted_in_words(input.model);
+    result.noise = input.model().noise;
+    result.warnings = unfitted_in_words(input.model());
     told.next();
     if (!adjusted) {
-      result.rows = dead_reckoned_poses(input.recordings->front(), input.model);
+      result.rows = dead_reckoned_poses(input.recordings().front(), input.model());
       return;
     }
     FitOptions how = use.fit;
     how.fit_effects = false;
-    const ModelFit fit = fit_model(*input.recordings, input.model, how);
+    const ModelFit fit = fit_model(input.recordings(), input.model(), how);
     result.warnings.insert(result.warnings.end(), fit.warnings.begin(), fit.warnings.end());
     result.left_out = fit.left_out;
     result.rows = adjusted_poses(fit);

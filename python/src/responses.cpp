@@ -61,7 +61,7 @@ py::tuple responses(const std::vector<EffectEvidence>& effects,
 }
 
 void add_responses(py::module_& module) {
-  RowClass<NamedResponse> type(module, "Response", "Response");
+  RowClass<NamedResponse> type(module, "Response");
   type.field("name", &NamedResponse::name)
       .value(
           "channel",
@@ -80,20 +80,20 @@ void add_responses(py::module_& module) {
       .value(
           "error_label", [](const NamedResponse& self) { return axes_of(self.response).error; },
           "What stands at the error's: \"compass reads too much by [\u00b0]\".")
-      .aside(
+      .value(
           "variable_factor",
           [](const NamedResponse& self) { return axes_of(self.response).variable_factor; },
           "From the arrays' unit to the label's.")
-      .aside(
+      .value(
           "error_factor",
           [](const NamedResponse& self) { return axes_of(self.response).error_factor; },
           "From the arrays' unit to the label's.")
-      .aside("at", bins<&ResponseBin::at>, "Mean of the variable in each bin.")
-      .aside("low", bins<&ResponseBin::low>, "Where each bin begins.")
-      .aside("high", bins<&ResponseBin::high>, "Where each bin ends.")
-      .aside("estimate", bins<&ResponseBin::estimate>, "The error in each bin.")
-      .aside("sd", bins<&ResponseBin::sd>, "Its standard error.")
-      .aside(
+      .value("at", bins<&ResponseBin::at>, "Mean of the variable in each bin.")
+      .value("low", bins<&ResponseBin::low>, "Where each bin begins.")
+      .value("high", bins<&ResponseBin::high>, "Where each bin ends.")
+      .value("estimate", bins<&ResponseBin::estimate>, "The error in each bin.")
+      .value("sd", bins<&ResponseBin::sd>, "Its standard error.")
+      .value(
           "curve", [](const NamedResponse& self) { return array_of(self.response.curve); },
           "Variable and error by the effect, n x 2, but for a constant; empty where it is no "
           "curve.");

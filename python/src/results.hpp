@@ -5,6 +5,7 @@
 #pragma once
 
 #include "calls.hpp"
+#include "fields.hpp"
 #include "inputs.hpp"
 #include "trussmap/calibrate.hpp"
 #include "trussmap/pages.hpp"
@@ -76,19 +77,7 @@ void show_constants(py::class_<Result>& type, RobotConstants (*constants)(const 
   type.def_property_readonly(
       "robot_constants",
       [constants](const Result& self) {
-        py::list rows;
-        for (const RobotConstant& one : unlocked([&] { return constants(self); }).list) {
-          py::dict row;
-          row["name"] = one.name;
-          row["old"] = one.before;
-          row["new"] = one.determined ? py::object(py::float_(one.after)) : py::object(py::none());
-          row["sd"] = one.determined && one.sd > 0.0 ? py::object(py::float_(one.sd))
-                                                     : py::object(py::none());
-          row["unit"] = one.unit;
-          row["note"] = one.note;
-          rows.append(row);
-        }
-        return rows;
+        return to_python(unlocked([&] { return constants(self); }).list);
       },
       "Constants to paste into the robot's software, a dict each: name, old, new, sd, unit, note.");
 }

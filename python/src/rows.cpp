@@ -5,30 +5,47 @@
 #include "trussmap/model.hpp"
 
 namespace trussmap::python {
+namespace {
 
-py::object cell(const py::object& value) {
-  if (py::isinstance<Effect>(value)) return value.attr("name");
-  return value;
+bool is_object(const py::object& value) {
+  return py::hasattr(value, "to_dict");
 }
 
-py::dict fields_of(const py::object& object, const std::vector<std::string>& fields) {
-  py::dict result;
-  for (const std::string& field : fields) {
-    std::string name = field;
-    if (name.back() == '_') name.pop_back();
-    result[py::str(name)] = cell(object.attr(field.c_str()));
+/// Lists of objects, dicts and arrays are no cells.
+bool is_cell(const py::object& value) {
+  if (py::isinstance<py::dict>(value) || py::hasattr(value, "__array__")) return false;
+  return !py::isinstance<py::tuple>(value) || py::len(value) == 0 ||
+         !is_object(py::object(value[py::int_(0)]));
+}
+
+}  // namespace
+
+py::dict row_of(const py::object& object, const std::vector<std::string>& names) {
+  py::dict row;
+  for (const std::string& name : names) {
+    std::string key = name;
+    if (key.back() == '_') key.pop_back();
+    const py::object value = object.attr(name.c_str());
+    if (py::isinstance<Effect>(value)) {
+      row[py::str(key)] = value.attr("name");
+    } else if (is_object(value)) {
+      for (const auto& [inner, one] : py::dict(value.attr("to_dict")())) {
+        row[py::str(key + "_" + std::string(py::str(inner)))] = one;
+      }
+    } else if (is_cell(value)) {
+      row[py::str(key)] = value;
+    }
   }
-  return result;
+  return row;
 }
 
-std::string repr_of(const py::object& object, const std::string& name,
-                    const std::vector<std::string>& fields) {
+std::string repr_of(const py::object& object, const std::vector<std::string>& names) {
   std::string text;
-  for (const std::string& field : fields) {
-    text += (text.empty() ? "" : ", ") + field + "=" +
-            std::string(py::repr(cell(object.attr(field.c_str()))));
+  for (const auto& [key, value] : row_of(object, names)) {
+    text +=
+        (text.empty() ? "" : ", ") + std::string(py::str(key)) + "=" + std::string(py::repr(value));
   }
-  return name + "(" + text + ")";
+  return std::string(py::str(py::type::of(object).attr("__name__"))) + "(" + text + ")";
 }
 
 }  // namespace trussmap::python

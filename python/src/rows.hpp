@@ -1,31 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Plain structs of the library as read-only Python objects: an attribute per member, documented as
-// its header does, a dict of them for tables.
+// Structs of the library as read-only Python objects: an attribute per field of its list, a dict of
+// them for tables.
 #pragma once
 
 #include "docs.hpp"
+#include "fields.hpp"
 
-#include <memory>
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
 #include <string>
 #include <vector>
 
 namespace trussmap::python {
 
-namespace py = pybind11;
-
-/// A value as a table's cell has it: an effect by its name.
-[[nodiscard]] py::object cell(const py::object& value);
-
-/// `fields` of an object, by name; a trailing _ (from_) is taken off.
-[[nodiscard]] py::dict fields_of(const py::object& object, const std::vector<std::string>& fields);
+/// An object's attributes, by name, for a table: effects by their names, attributes of objects
+/// under both names ("heldout_arrival_rms_m"); lists of objects are left out.
+[[nodiscard]] py::dict row_of(const py::object& object, const std::vector<std::string>& names);
 
 /// "Name(chi2=12.5, dof=7)".
-[[nodiscard]] std::string repr_of(const py::object& object, const std::string& name,
-                                  const std::vector<std::string>& fields);
+[[nodiscard]] std::string repr_of(const py::object& object, const std::vector<std::string>& names);
 
 /// Dicts of all: what pandas.DataFrame takes.
 template <typename Row>
@@ -38,19 +33,17 @@ template <typename Row>
 template <typename T>
 class RowClass {
  public:
-  /// `name`: in Python; `header`: the struct's in C++.
-  RowClass(py::module_& module, const char* name, const char* header)
-      : class_(module, name,
-               *doc(header) == '\0' ? "A row: attributes, and to_dict() for tables." : doc(header)),
-        name_(name),
-        header_(header),
-        fields_(std::make_shared<std::vector<std::string>>()) {
+  RowClass(py::module_& module, const char* name, const char* about = "")
+      : class_(module, name, *about == '\0' ? doc(name) : about), header_(name) {
+    if constexpr (results::HasFields<T>) {
+      add_fields<T, T>(class_, results::kDescribed<T>,
+                       [](const T& self) -> const T& { return self; });
+    }
     class_.def(
-        "to_dict", [fields = fields_](const py::object& self) { return fields_of(self, *fields); },
-        "Attributes by name, for tables; effects by their names.");
-    class_.def("__repr__", [fields = fields_, own = name_](const py::object& self) {
-      return repr_of(self, own, *fields);
-    });
+        "to_dict", [](const py::object& self) { return row_of(self, columns(self)); },
+        "Attributes by name, for tables.");
+    class_.def("__repr__", [](const py::object& self) { return repr_of(self, columns(self)); });
+    note_method(class_, "def to_dict(self) -> dict[str, Any]: ...");
   }
 
   /// A member of the same name.
@@ -58,37 +51,44 @@ class RowClass {
   RowClass& field(const char* name, Member T::*member) {
     std::string key = name;
     if (key.back() == '_') key.pop_back();
-    class_.def_property_readonly(
-        name, [member](const T& self) -> const Member& { return self.*member; },
-        py::return_value_policy::copy, doc(header_ + "." + key));
-    fields_->emplace_back(name);
-    return *this;
+    return value(
+        name, [member](const T& self) { return self.*member; }, doc(header_ + "." + key));
   }
 
   /// What a function of the struct says.
   template <typename Get>
   RowClass& value(const char* name, Get get, const char* about = "") {
-    const std::string key = header_ + "." + name;
-    class_.def_property_readonly(name, get, *about == '\0' ? doc(key) : about);
-    fields_->emplace_back(name);
-    return *this;
-  }
-
-  /// The same, and no cell of a table.
-  template <typename Get>
-  RowClass& aside(const char* name, Get get, const char* about = "") {
-    const std::string key = header_ + "." + name;
-    class_.def_property_readonly(name, get, *about == '\0' ? doc(key) : about);
+    using Value = std::remove_cvref_t<std::invoke_result_t<Get, const T&>>;
+    class_.def_property_readonly(
+        name,
+        [get](const T& self) {
+          if constexpr (std::is_base_of_v<py::handle, Value>) {
+            return get(self);
+          } else {
+            return to_python(get(self));
+          }
+        },
+        *about == '\0' ? doc(header_ + "." + name) : about);
+    if constexpr (std::is_base_of_v<py::array, Value>) {
+      note_attribute(class_, name, [] { return std::string("_Array"); });
+    } else if constexpr (std::is_base_of_v<py::handle, Value>) {
+      note_attribute(class_, name, [] { return std::string("Any"); });
+    } else {
+      note_attribute(class_, name, [] { return type_text<Value>(); });
+    }
     return *this;
   }
 
   py::class_<T>& type() { return class_; }
 
  private:
+  /// Names of the properties, in their order.
+  static std::vector<std::string> columns(const py::object& self) {
+    return noted_names(py::type::of(self));
+  }
+
   py::class_<T> class_;
-  std::string name_;
   std::string header_;
-  std::shared_ptr<std::vector<std::string>> fields_;
 };
 
 }  // namespace trussmap::python

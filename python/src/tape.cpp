@@ -234,7 +234,7 @@ Page runs_page(const WheelNoiseResult& self) {
 }
 
 void add_noise_class(py::module_& module) {
-  RowClass<WheelConstant>(module, "WheelConstant", "WheelConstant")
+  RowClass<WheelConstant>(module, "WheelConstant")
       .field("k", &WheelConstant::k)
       .field("standard_error", &WheelConstant::standard_error)
       .field("upper_limit", &WheelConstant::upper_limit);

@@ -38,9 +38,9 @@ class TheSame(unittest.TestCase):
         self.assertEqual([one.score for one in result.trends],
                          [one["score"] for one in told["trends"]])
         self.assertEqual([one.chi2 for one in result.worst], [one["chi2"] for one in told["worst"]])
-        self.assertEqual([(one.source, one.factor, one.sd) for one in result.sources],
+        self.assertEqual([(one.source, one.factor, one.sd) for one in result.noise],
                          [(one["source"], one["factor"], one["sd"]) for one in told["noise"]])
-        self.assertEqual(result.held_out.arrival_rms, told["heldout"]["arrival_rms_m"])
+        self.assertEqual(result.heldout.arrival_rms_m, told["heldout"]["arrival_rms_m"])
 
     def check_diagnosis(self, recording):
         printed, told = printed_and_json(scratch_folder(self), "diagnose", recording, "--model",
@@ -51,7 +51,7 @@ class TheSame(unittest.TestCase):
             self.assertEqual(getattr(result, key), told[key], key)
         self.assertEqual(
             [(one.effect.name, one.score, one.p_adjusted, one.coefficients, one.status)
-             for one in result.findings],
+             for one in result.candidates],
             [(one["effect"], one["score"], one["p_adjusted"], one["coefficients"], one["status"])
              for one in told["candidates"]])
 
@@ -61,7 +61,7 @@ class TheSame(unittest.TestCase):
         result = trussmap.build_map(recording, model_of(recording), **named)
         self.assert_printed(result, printed.split("\n  written: ")[0])
         self.assertEqual(result.chi2, told["chi2"])
-        self.assertEqual(result.quality.median_sd, told["quality"]["median_sd_m"])
+        self.assertEqual(result.quality.median_sd_m, told["quality"]["median_sd_m"])
         places = told["positions"]
         self.assertEqual(result.landmarks, list(places))
         self.assertEqual([tuple(at) for at in result.positions],
@@ -82,8 +82,8 @@ class TheSame(unittest.TestCase):
                                          model_of(RIDDLE), "--exclude", "20:60")
         result = trussmap.diagnose(RIDDLE, model_of(RIDDLE), exclude=numpy.array([[20.0, 60.0]]))
         self.assert_printed(result, printed)
-        self.assertEqual([(one.effect.name, one.cosine, one.behind)
-                          for one in result.findings[0].look_alikes],
+        self.assertEqual([(one.effect.name, one.cosine, one.chi2_behind)
+                          for one in result.candidates[0].indistinguishable_from],
                          [(one["effect"], one["cosine"], one["chi2_behind"])
                           for one in told["candidates"][0]["indistinguishable_from"]])
 

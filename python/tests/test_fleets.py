@@ -39,7 +39,7 @@ class Fleet(unittest.TestCase):
         (one,) = finding.coefficients
         self.assertEqual((finding.effect, one.common), ("wheelbase", True))
         self.assertLess(abs(one.mean - WHEELBASE), 3.0 * one.sd)
-        self.assertEqual([robot.robot for robot in one.members if robot.differs], ["R3"])
+        self.assertEqual([robot.robot for robot in one.each if robot.differs], ["R3"])
         self.assertEqual({row["robot"] for row in self.report.table("robots")},
                          {f"R{robot}" for robot in range(6)})
         self.assertIn("R3", str(self.report))
@@ -49,7 +49,7 @@ class Fleet(unittest.TestCase):
         column = self.rows[0].columns.index(("wheelbase", "1"))
         g = sum(row.g[column] for row in self.rows)
         S = sum(row.S[column, column] for row in self.rows)
-        (test,) = [one for one in self.report.tests if one.effect == "wheelbase"]
+        (test,) = [one for one in self.report.pooled_tests if one.effect == "wheelbase"]
         # But for a weak prior on sizes; residuals are predicted less measured.
         self.assertAlmostEqual(test.score / (g * g / S), 1.0, places=3)
         self.assertAlmostEqual(test.coefficients[0] / (-g / S), 1.0, places=3)

@@ -24,18 +24,18 @@ class Results(unittest.TestCase):
     def test_the_riddle_is_solved(self):
         self.assertEqual((self.diagnosis.verdict, self.diagnosis.missing), ("missing", "hard iron"))
         fitted = trussmap.fit(RIDDLE, self.diagnosis.model)
-        self.assertLess(fitted.held_out.arrival_rms, 0.1 * fitted.held_out_without.arrival_rms)
+        self.assertLess(fitted.heldout.arrival_rms_m, 0.1 * fitted.without_effects["heldout"].arrival_rms_m)
         self.assertEqual(trussmap.compare(RIDDLE, fitted.model).verdict, "consistent")
 
     def test_cannot_be_changed(self):
-        for result in (self.diagnosis, self.comparison, self.map, self.diagnosis.findings[0]):
+        for result in (self.diagnosis, self.comparison, self.map, self.diagnosis.candidates[0]):
             with self.assertRaises(AttributeError):
                 result.chi2 = 0.0
             with self.assertRaises(AttributeError):
                 result.score = 0.0
 
     def test_tables_are_what_pandas_takes(self):
-        for result, tables in ((self.diagnosis, ("candidates", "noise", "noise laws", "events",
+        for result, tables in ((self.diagnosis, ("candidates", "noise", "noise laws", "outliers",
                                                  "unobservable")),
                                (self.comparison, ("trends", "legs", "routes", "landmarks", "noise",
                                                   "outliers")),
@@ -47,7 +47,7 @@ class Results(unittest.TestCase):
                 result.table("nothing")
         first = self.diagnosis.table()[0]
         self.assertEqual((first["effect"], first["status"]), ("hard iron", "missing"))
-        self.assertEqual(first["score"], self.diagnosis.findings[0].score)
+        self.assertEqual(first["score"], self.diagnosis.candidates[0].score)
         try:
             import pandas
         except ImportError:
@@ -103,9 +103,9 @@ class Results(unittest.TestCase):
 
     def test_say_a_status_as_the_table_does(self):
         printed = str(self.diagnosis)
-        for one in self.diagnosis.findings[:8]:
+        for one in self.diagnosis.candidates[:8]:
             self.assertIn(one.status_in_words, printed)
-        self.assertEqual(self.diagnosis.findings[0].status_in_words, "missing")
+        self.assertEqual(self.diagnosis.candidates[0].status_in_words, "missing")
 
     def test_are_drawn(self):
         try:

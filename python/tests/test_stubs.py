@@ -20,7 +20,7 @@ import trussmap
 recording = trussmap.Recording({"t": np.arange(3.0), "left": np.ones(3), "right": np.ones(3)})
 model: trussmap.Model = trussmap.Model(0.34, noise={"left": 0.003}).with_effect("wheelbase")
 diagnosis = trussmap.diagnose([recording], model, progress=lambda what, done: None)
-best: trussmap.Finding = diagnosis.findings[0]
+best: trussmap.Finding = diagnosis.candidates[0]
 score: float = best.score
 """
 WRONG = """

@@ -78,7 +78,7 @@ def plot_response(self, axes=None):
 def plot_comparison(self, axes=None):
     """How noisy each source is, against what the model states."""
     axes = _axes(axes)
-    _bars(axes, [one.source for one in self.sources], [one.factor for one in self.sources],
+    _bars(axes, [one.source for one in self.noise], [one.factor for one in self.noise],
           "standard deviation, true over stated")
     axes.axvline(1.0, color="0.5", linestyle=":")
     return axes
@@ -87,7 +87,7 @@ def plot_comparison(self, axes=None):
 def plot_diagnosis(self, axes=None, count=8):
     """The best candidates, by the chi2 that each would take away."""
     axes = _axes(axes)
-    best = self.findings[:count]
+    best = self.candidates[:count]
     return _bars(axes, [one.effect.name for one in best], [one.score for one in best],
                  "chi2 that it would take away")
 
@@ -96,14 +96,14 @@ def plot_discovery(self, axes=None):
     """The error of held-out legs, from model to model."""
     axes = _axes(axes)
     names = ["as given"] + ["+ " + step.added.name for step in self.steps[1:]]
-    return _bars(axes, names, [1e3 * step.held_out.arrival_rms for step in self.steps],
+    return _bars(axes, names, [1e3 * step.heldout.arrival_rms_m for step in self.steps],
                  "held-out legs end off by [mm, rms]")
 
 
 def plot_fit(self, axes=None):
     """The error of held-out legs without the effects and with them."""
     axes = _axes(axes)
-    errors = [self.held_out_without.arrival_rms, self.held_out.arrival_rms]
+    errors = [self.without_effects["heldout"].arrival_rms_m, self.heldout.arrival_rms_m]
     return _bars(axes, ["without effects", "with them"], [1e3 * one for one in errors],
                  "held-out legs end off by [mm, rms]")
 
@@ -115,7 +115,7 @@ def plot_fleet(self, axes=None, finding=0):
         axes.text(0.5, 0.5, "nothing found", ha="center", transform=axes.transAxes)
         return axes
     one = self.findings[finding]
-    for place, robot in enumerate(one.coefficients[0].members):
+    for place, robot in enumerate(one.coefficients[0].each):
         axes.errorbar(place, robot.value, yerr=robot.sd, fmt="o", markersize=3,
                       color="k" if robot.differs or robot.drifts else "0.6")
         if robot.differs or robot.drifts:

@@ -44,6 +44,7 @@ Comparison compare(const std::vector<DrivenRecording>& recordings, const ModelFi
   result.dof = fit.dof;
   result.coefficients = fit.coefficients;
   result.p_value = fit.p_value;
+  result.level = options.level;
   result.landmarks = fit.landmarks.size();
   result.warnings = fit.warnings;
   Misfits misfits = find_misfits(state, tests, options.legs);

@@ -52,6 +52,7 @@ class Diagnostician {
     result_.chi2 = fit_.chi2;
     result_.dof = fit_.dof;
     result_.coefficients = fit_.coefficients;
+    result_.level = options_.level;
     result_.warnings = fit_.warnings;
     result_.held_out = legs_->metrics();
     result_.lacks = lacks_of(recordings_, fit_.model.robot, fit_.options);

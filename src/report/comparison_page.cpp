@@ -55,7 +55,7 @@ PageTable outlier_table(const Comparison& result) {
 
 /// The trend to name, where one is clear.
 const Trend* telling_trend(const Comparison& result) {
-  const bool clear = !result.trends.empty() && result.trends.front().p_adjusted < kSignificance;
+  const bool clear = !result.trends.empty() && result.trends.front().p_adjusted < result.level;
   return clear ? &result.trends.front() : nullptr;
 }
 
@@ -114,7 +114,7 @@ std::vector<std::string> large_rows(const Comparison& result) {
 std::vector<std::string> otherwise_rows(const Comparison& result) {
   std::vector<std::string> trends;
   for (const Trend& one : result.trends) {
-    if (!(one.p_adjusted < kSignificance) || trends.size() == kTrendsNamed) break;
+    if (!(one.p_adjusted < result.level) || trends.size() == kTrendsNamed) break;
     if (&one != &result.trends.front()) trends.push_back(trend_words(one));
   }
   std::vector<std::string> rows;

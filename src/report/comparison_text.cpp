@@ -32,7 +32,7 @@ std::string trends_text(const Comparison& result, TextStyle style) {
       {Align::left, Align::left, Align::right, Align::right, Align::right}, {}, true, 2};
   table.rows.push_back({"residual of", "goes with", "explains chi2", "size (rms)", "p, adjusted"});
   for (const Trend& trend : result.trends) {
-    if (trend.p_adjusted > kSignificance || table.rows.size() > kMost) continue;
+    if (trend.p_adjusted > result.level || table.rows.size() > kMost) continue;
     table.rows.push_back({trend.kind, trend.against == "all" ? "everything alike" : trend.against,
                           fmt::format("{:.1f}", trend.score), size_text(trend),
                           probability_text(trend.p_adjusted)});

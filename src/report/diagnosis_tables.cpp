@@ -59,7 +59,7 @@ FindingVerdict verdict_on(const Finding& one, const FindingSize& size, const Dia
       looks_like_one_of(one.effect, diagnosis.findings.front().look_alikes)) {
     return {"could be it instead"};
   }
-  if (one.p_adjusted < kSignificance) {
+  if (one.p_adjusted < diagnosis.level) {
     if (one.implausible) return {"would have to be implausibly large"};
     return {diagnosis.missing.empty() ? "explained by noise or a single event"
                                       : "explained by what is missing"};
@@ -75,7 +75,7 @@ FindingVerdict verdict_on(const Finding& one, const FindingSize& size, const Dia
 /// A second effect that is missing shows only when the first is in.
 std::string chance_of(const Finding& one, const Diagnosis& diagnosis) {
   const bool second = one.status == Status::missing && &one != &diagnosis.findings.front();
-  return second && one.p_adjusted >= kSignificance ? "seen once the first is in"
+  return second && one.p_adjusted >= diagnosis.level ? "seen once the first is in"
                                                    : chance_text(one.p_adjusted);
 }
 
@@ -133,7 +133,7 @@ void add_noise(PageTable& table, const Diagnosis& diagnosis) {
   }
   if (diagnosis.noise.empty()) return;
   const NoiseTest& first = diagnosis.noise.front();
-  const bool more = first.p_adjusted < kSignificance;
+  const bool more = first.p_adjusted < diagnosis.level;
   table.rows.push_back({"noise", more ? "more than the model states" : "as the model states it",
                         first.law, more ? typeset(in_words(first)) : "-", "-",
                         chance_text(first.p_adjusted)});
@@ -146,7 +146,7 @@ void add_event(PageTable& table, const char* part, const Diagnosis& diagnosis, b
                                     return (one.kind == EventKind::landmark) == of_landmarks;
                                   });
   if (found == diagnosis.events.end()) return;
-  const bool stands_out = found->p_adjusted < kSignificance;
+  const bool stands_out = found->p_adjusted < diagnosis.level;
   table.rows.push_back({part, stands_out ? "stands out" : "nothing out of line",
                         fmt::format("{} {}", name_of(found->kind), found->name),
                         stands_out ? typeset(in_words(*found)) : "-", "-",
@@ -230,11 +230,11 @@ PageTable others_table(const Diagnosis& diagnosis) {
                             const std::string& words, double score, double p) {
     table.rows.push_back(
         {what, which, typeset(words), fmt::format("{:.1f}", score), chance_text(p)});
-    table.tones.push_back(p < kSignificance ? Tone::bad : Tone::neutral);
+    table.tones.push_back(p < diagnosis.level ? Tone::bad : Tone::neutral);
   };
   for (std::size_t k = 0; k < std::min(kEventRows, diagnosis.noise.size()); ++k) {
     const NoiseTest& one = diagnosis.noise[k];
-    add("noise", one.law, one.p_adjusted < kSignificance ? in_words(one) : "-", one.score,
+    add("noise", one.law, one.p_adjusted < diagnosis.level ? in_words(one) : "-", one.score,
         one.p_adjusted);
   }
   for (std::size_t k = 0; k < std::min(kEventRows, diagnosis.events.size()); ++k) {

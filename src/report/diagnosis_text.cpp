@@ -82,14 +82,14 @@ std::string others_text(const Diagnosis& result, std::size_t count) {
   std::size_t shown = 0;
   const bool estimated = result.under && result.under->noise.changed();  // shown by itself
   for (const NoiseTest& one : estimated ? std::vector<NoiseTest>() : result.noise) {
-    if (one.p_adjusted >= kSignificance || shown >= 2) continue;
+    if (one.p_adjusted >= result.level || shown >= 2) continue;
     if (shown++ == 0) text += "\nMore noise than the model states\n";
     text += fmt::format("  {}: {} (score {:.1f}, p {})\n", one.law, in_words(one), one.score,
                         probability_text(one.p_adjusted));
   }
   shown = 0;
   for (const EventTest& one : result.events) {
-    if (one.p_adjusted >= kSignificance || shown >= count) continue;
+    if (one.p_adjusted >= result.level || shown >= count) continue;
     if (shown++ == 0) text += "\nSingle events\n";
     text += fmt::format("  {}: {} (score {:.1f}, p {})\n", name_of(one.kind), in_words(one),
                         one.score, probability_text(one.p_adjusted));
@@ -109,7 +109,7 @@ std::string candidates_text(const Diagnosis& result, std::size_t count, TextStyl
   for (std::size_t k = 0; k < std::min(count, result.findings.size()); ++k) {
     const Finding& one = result.findings[k];
     // By itself it may not show: the table's figures are of each alone.
-    const bool beside = k > 0 && one.status == Status::missing && one.p_adjusted >= kSignificance;
+    const bool beside = k > 0 && one.status == Status::missing && one.p_adjusted >= result.level;
     table.rows.push_back(
         {shortened(one.effect.name, kWidestCell), shortened(formula_of(one.effect), kWidestCell),
          fmt::format("{:.1f} ({})", one.score, one.dof),

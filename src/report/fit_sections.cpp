@@ -86,7 +86,7 @@ PageTable trend_table(const Comparison& result) {
     if (table.rows.size() == kTrends) break;
     table.rows.push_back({trend.kind, trend_variable(trend), fmt::format("{:.1f}", trend.score),
                           shown(trend.size, trend.unit), probability_text(trend.p_adjusted)});
-    table.tones.push_back(trend.p_adjusted < kSignificance ? Tone::bad : Tone::neutral);
+    table.tones.push_back(trend.p_adjusted < result.level ? Tone::bad : Tone::neutral);
   }
   return table;
 }
@@ -280,7 +280,7 @@ PageSection trend_section(const std::string& title, const Comparison& result,
   for (const TrendEvidence& one : trends) {
     const Trend& trend = one.trend;
     const std::string variable = variable_in_words(one.response.variable);
-    if (!(trend.p_adjusted < kSignificance)) {
+    if (!(trend.p_adjusted < result.level)) {
       without.push_back(variable);
       continue;
     }
@@ -296,9 +296,9 @@ PageSection trend_section(const std::string& title, const Comparison& result,
   const bool any = !charts.empty();
   if (any) section.blocks.emplace_back(std::move(charts));
   if (!without.empty()) {
-    section.blocks.emplace_back(fmt::format("{} trend with {} (p of 0.05 and more).",
+    section.blocks.emplace_back(fmt::format("{} trend with {} (p of {:g} and more).",
                                             any ? "No" : "The errors go with nothing: no",
-                                            listed(without, "or")));
+                                            listed(without, "or"), result.level));
   }
   section.details.emplace_back(trend_table(result));
   return section;

@@ -300,13 +300,13 @@ std::vector<std::string> others_notes(const Diagnosis& diagnosis, const std::str
                     typeset(in_words(diagnosis.under->noise)), who_states));
   }
   for (const NoiseTest& one : diagnosis.noise) {
-    if (one.p_adjusted >= kSignificance || !notes.empty()) continue;
+    if (one.p_adjusted >= diagnosis.level || !notes.empty()) continue;
     notes.push_back(
         fmt::format("More noise than the model states ({}): {}.", one.law, typeset(in_words(one))));
     break;
   }
   for (const EventTest& one : diagnosis.events) {
-    if (one.p_adjusted >= kSignificance) continue;
+    if (one.p_adjusted >= diagnosis.level) continue;
     notes.push_back(fmt::format("A single event stands out: {}.", typeset(in_words(one))));
     break;
   }

@@ -91,7 +91,7 @@ ordered_json card_json(const TriedModel& now, std::size_t k) {
   card["chi2_less"] = one.score;
   card["leaves_mm"] = 1e3 * one.held_out.arrival_rms;
   card["p"] = chance_text(one.p_adjusted);
-  card["significant"] = one.p_adjusted < kSignificance;
+  card["significant"] = one.p_adjusted < diagnosis.level;
   ordered_json looks_like = ordered_json::array();
   for (const LookAlike& rival : one.look_alikes) {
     if (!rival.told_apart()) looks_like.push_back(rival.effect.name);

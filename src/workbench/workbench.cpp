@@ -108,7 +108,7 @@ TriedModel Workbench::tried(const WorkbenchLog& log, const WorkbenchWatch& watch
     DiagnoseOptions as_stated = options;
     as_stated.estimate_noise = false;
     TriedModel first = tried(model, as_stated, watch);
-    const bool fits = first.fit().p_value > kSignificance;
+    const bool fits = first.fit().p_value > options.level;
     if (fits && first.diagnosis().verdict != Diagnosis::Verdict::missing) return first;
     WorkbenchLog with = log;
     put_figures(with.steps[with.at], first);
