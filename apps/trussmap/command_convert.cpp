@@ -209,7 +209,8 @@ void setup_convert(const Command& app) {
   command
       .add_option(
           "--map", options->map,
-          "IN is a log: MCAP, a rosbag2 (.db3 or its folder), .wpilog, Road Runner's .log, "
+          "IN is a log: MCAP, a rosbag2 (.db3 or its folder), a bag of ROS 1 (.bag), .wpilog, Road "
+          "Runner's .log, "
           "or a table (.csv, .tsv, .txt); FILE (map.toml) says which of its fields are what, and "
           "of several logs by file = \"NAME\" in which one they are. Of a "
           "recording to a bag: FILE is written, and reads the bag back")

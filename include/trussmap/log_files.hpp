@@ -3,8 +3,8 @@
 //
 // Component trussmap::logs.
 //
-// Bags and logs of others: MCAP, rosbag2, WPILib, Road Runner, any table; and bags out of poses and
-// recordings. Link trussmap::logs for it.
+// Bags and logs of others: MCAP, rosbag2, bags of ROS 1, WPILib, Road Runner, any table; and bags
+// out of poses and recordings. Link trussmap::logs for it.
 //
 //   log + map.toml --read_log_recording--> recording + model
 //   log ------------inspect_log----------> what is in it, and a first map.toml
@@ -29,8 +29,8 @@ namespace trussmap {
 // ----------------------------------------
 // In.
 
-/// Whether the path is a log that can be read: an .mcap, a .db3 or a rosbag2's folder, a .wpilog, a
-/// Road Runner .log, or a table (.csv, .tsv, .txt, also with .xz).
+/// Whether the path is a log that can be read: an .mcap, a .db3 or a rosbag2's folder, a .bag of
+/// ROS 1, a .wpilog, a Road Runner .log, or a table (.csv, .tsv, .txt, also with .xz).
 [[nodiscard]] bool is_log(const std::filesystem::path& path);
 
 /// So many of something, for a list.

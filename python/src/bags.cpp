@@ -63,11 +63,12 @@ void add_bags(py::module_& module) {
       .def("__repr__", [](const ReadBag& self) {
         return "<trussmap.Bag of " + std::string(py::repr(py::cast(self.recording))) + ">";
       });
-  module.def("read_bag", read_bag, py::arg("log"), py::arg("map"),
-             doc("A bag (MCAP, rosbag2), a WPILib or Road Runner log or a table, or several that "
-                 "belong together, read as their map.toml says (docs/logs.md).",
-                 "read_log_recording")
-                 .c_str());
+  module.def(
+      "read_bag", read_bag, py::arg("log"), py::arg("map"),
+      doc("A bag (MCAP, rosbag2, ROS 1), a WPILib or Road Runner log or a table, or several that "
+          "belong together, read as their map.toml says (docs/logs.md).",
+          "read_log_recording")
+          .c_str());
   module.def(
       "inspect_bag",
       [](const Logs& log) { return unlocked([&] { return inspect_logs(listed(log)).map; }); },

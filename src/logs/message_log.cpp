@@ -41,7 +41,8 @@ LogEnd read_message_log(const fs::path& path, const LogVisit& visit) {
   }
   throw InputError(path.string(), 0,
                    "is no log that can be read, expected an MCAP file, a rosbag2 (.db3 or its "
-                   "folder), a .wpilog, a Road Runner .log or a table (.csv, .tsv, .txt)");
+                   "folder), a bag of ROS 1 (.bag), a .wpilog, a Road Runner .log or a table "
+                   "(.csv, .tsv, .txt)");
 }
 
 void require_messages(const fs::path& path, const LogEnd& end) {

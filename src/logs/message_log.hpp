@@ -29,7 +29,7 @@ namespace trussmap {
 struct LogTopic {
   std::string name;      ///< empty of a table, which has but one
   std::string type;      ///< as the log has it: nav_msgs/msg/Odometry, double[], struct:Pose2d
-  std::string encoding;  ///< cdr, wpilog, road runner, csv
+  std::string encoding;  ///< cdr, ros1, wpilog, road runner, csv
   std::string unread;    ///< why its messages cannot be read ("protobuf"); empty: they can
   /// Fields are named by the columns of a table, which may have any characters in them.
   bool table = false;
@@ -72,7 +72,7 @@ inline constexpr std::uint64_t kLargestChunk = std::uint64_t{256} << 20U;
 [[nodiscard]] LogEnd read_mcap(const std::filesystem::path& file, const LogVisit& visit);
 
 /// A .db3 (plain, or .db3.zstd), or the folder of a bag with its metadata.yaml, of sqlite3 or mcap
-/// files.
+/// files; a bag of ROS 1 (.bag), or a folder of them.
 [[nodiscard]] bool is_rosbag2(const std::filesystem::path& path);
 [[nodiscard]] LogEnd read_rosbag2(const std::filesystem::path& path, const LogVisit& visit);
 

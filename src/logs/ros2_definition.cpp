@@ -71,6 +71,15 @@ std::string_view next_line(std::string_view& text) {
   return without_spaces(line);
 }
 
+constexpr std::string_view kRos1Time = "builtin_interfaces/Time";
+constexpr std::string_view kRos1Duration = "builtin_interfaces/Duration";
+
+/// What is a plain type in ROS 1, as a group; nothing of other types.
+std::string_view time_of_ros1(std::string_view type) {
+  if (type == kRos1Time) return "uint32 sec\nuint32 nanosec";
+  return type == kRos1Duration ? "int32 sec\nint32 nanosec" : std::string_view();
+}
+
 /// The part of a definition that is of one type.
 struct Section {
   std::string_view text;
@@ -80,13 +89,13 @@ struct Section {
 
 class Parser {
  public:
-  Parser(std::string_view type, std::string_view text) {
+  Parser(std::string_view type, std::string_view text, bool ros1) : ros1_(ros1) {
     if (text.size() > kLongestText) {
       throw DefinitionError("its definition has more than " + std::to_string(kLongestText) +
                             " bytes");
     }
     const auto blank = [](char c) { return is_space(c) || c == '\n'; };
-    if (!std::all_of(text.begin(), text.end(), blank)) split(ros2_type_name(type), text);
+    if (ros1 || !std::all_of(text.begin(), text.end(), blank)) split(ros2_type_name(type), text);
   }
 
   Ros2Layout layout(std::string_view type) {
@@ -136,12 +145,14 @@ class Parser {
       std::string near = package;
       near.append("/").append(type);
       names = {std::move(near), type, std::string("std_msgs/").append(type)};
+      if (ros1_ && type == "Header") names = {names.back()};
     }
     for (const std::string& name : names) {
       if (const auto known = sections_.find(name); known != sections_.end()) {
         return {{name, known->second}};
       }
-      if (const std::string_view text = standard_ros2_definition(name); text.data() != nullptr) {
+      const std::string_view text = ros1_ ? time_of_ros1(name) : standard_ros2_definition(name);
+      if (text.data() != nullptr) {
         return {{name, Section{text, 1, true}}};
       }
     }
@@ -157,7 +168,7 @@ class Parser {
     if (!found) fail("type " + type + " is not defined");
     const auto& [name, section] = *found;
     if (const auto known = done_.find(name); known != done_.end()) {
-      if (layout_.groups[known->second].least == 0) fail("type " + name + " contains itself");
+      if (layout_.groups[known->second].depth == 0) fail("type " + name + " contains itself");
       return known->second;
     }
     if (depth > kDeepestType) fail("its types are nested too deep");
@@ -187,7 +198,7 @@ class Parser {
       if (line.empty() || line.front() == '#') continue;
       if (std::optional<Ros2Field> field = field_of(line, depth)) add(result, std::move(*field));
     }
-    result.least = std::max<std::uint64_t>(result.least, 1);  // an empty one has a byte
+    if (!ros1_) result.least = std::max<std::uint64_t>(result.least, 1);  // an empty one has a byte
     result.depth += 1;
     if (result.depth > kDeepestType) fail("its types are nested too deep");
     return result;
@@ -261,9 +272,12 @@ class Parser {
   }
 
   void set_type(Ros2Field& field, std::string_view type, std::size_t depth) {
+    if (ros1_ && (type == "time" || type == "duration")) {
+      type = type == "time" ? kRos1Time : kRos1Duration;
+    }
     for (const auto& [name, plain] : kPlain) {
       if (type != name) continue;
-      field.type = plain;
+      field.type = ros1_ && type == "byte" ? Ros2Type::int8 : plain;
       layout_.wide = layout_.wide || plain == Ros2Type::wide_text;
       return;
     }
@@ -276,7 +290,8 @@ class Parser {
   }
 
   std::map<std::string, Section> sections_;
-  std::map<std::string, std::size_t> done_;  // where in the layout; least is 0 while it is filled
+  bool ros1_;
+  std::map<std::string, std::size_t> done_;  // where in the layout; depth is 0 while it is filled
   std::vector<std::string> package_;         // of the types that are being read
   std::size_t line_ = 0;
   bool standard_ = false;
@@ -316,7 +331,11 @@ std::string ros2_type_name(std::string_view type) {
 }
 
 Ros2Layout parse_ros2_definition(std::string_view type, std::string_view text) {
-  return Parser(type, text).layout(type);
+  return Parser(type, text, false).layout(type);
+}
+
+Ros2Layout parse_ros1_definition(std::string_view type, std::string_view text) {
+  return Parser(type, text, true).layout(type);
 }
 
 }  // namespace trussmap
