@@ -33,6 +33,12 @@ namespace trussmap {
 /// ROS 1, a .wpilog, a Road Runner .log, or a table (.csv, .tsv, .txt, also with .xz).
 [[nodiscard]] bool is_log(const std::filesystem::path& path);
 
+struct LogOptions {
+  /// Definitions of ROS 2 messages for bags that lack them: PACKAGE/NAME.msg, PACKAGE/msg/NAME.msg,
+  /// or folders in which such files are. What a bag defines itself counts before them.
+  std::vector<std::filesystem::path> definitions = {};
+};
+
 /// So many of something, for a list.
 struct LogCount {
   std::size_t number = 0;
@@ -50,12 +56,14 @@ struct LogRecording {
 /// Reads a log as its map.toml says. Throws InputError: the map's line where it is wrong or asks
 /// for what the log does not have; the log's offset, or a table's line, where it is damaged.
 [[nodiscard]] LogRecording read_log_recording(const std::filesystem::path& log,
-                                              const std::filesystem::path& map);
+                                              const std::filesystem::path& map,
+                                              const LogOptions& options = {});
 /// Of several logs that belong together: tables, or a bag and tables; of a folder all logs in it.
 /// Each table of the map says by `file` which log its fields are of, and each [[time]] which one's
 /// times. Throws InputError too where no log, or more than one, is called like a `file`.
 [[nodiscard]] LogRecording read_log_recording(const std::vector<std::filesystem::path>& logs,
-                                              const std::filesystem::path& map);
+                                              const std::filesystem::path& map,
+                                              const LogOptions& options = {});
 
 /// A field of a log's topic, or a column of a table.
 struct LogFieldFacts {
@@ -116,11 +124,13 @@ struct LogInspection {
 };
 
 /// Throws InputError where the log is damaged.
-[[nodiscard]] LogInspection inspect_log(const std::filesystem::path& log);
+[[nodiscard]] LogInspection inspect_log(const std::filesystem::path& log,
+                                        const LogOptions& options = {});
 /// The same of several that belong together (of a folder: all logs in it), with their clocks: that
 /// of the wheels' log is the reference, and others are compared with it by turns, else by speeds. A
 /// table of landmarks (landmark,x,y) is the map's survey.
-[[nodiscard]] LogInspection inspect_logs(const std::vector<std::filesystem::path>& logs);
+[[nodiscard]] LogInspection inspect_logs(const std::vector<std::filesystem::path>& logs,
+                                         const LogOptions& options = {});
 
 // ----------------------------------------
 // Bags of ROS 2 messages (MCAP, profile ros2) out of poses and recordings: for Foxglove,

@@ -32,8 +32,9 @@ BagTopics::Definition BagTopics::definition_of(const BagChannel& channel) {
     return found;
   }
   try {
-    found.layout = std::make_shared<Ros2Layout>(ros1 ? parse_ros1_definition(channel.type, text)
-                                                     : parse_ros2_definition(channel.type, text));
+    found.layout = std::make_shared<Ros2Layout>(
+        ros1 ? parse_ros1_definition(channel.type, text)
+             : parse_ros2_definition(channel.type, text, visit_->definitions));
   } catch (const DefinitionError& error) {
     const bool known = ros1 || encoding.empty() || encoding == "ros2msg";
     found.unread = known ? error.what() : encoding;

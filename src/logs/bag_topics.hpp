@@ -4,7 +4,7 @@
 // The topics of a ROS bag, in all its files: what readers of MCAP, SQLite and ROS 1 have in common.
 //
 // Several channels (of one file or of many) may carry the same topic. A channel's messages are
-// decoded by the definition that the bag has of its type, or by the standard one.
+// decoded by the definition that the bag has of its type, or by the given or the standard one.
 #pragma once
 
 #include "logs/decompress.hpp"

@@ -49,7 +49,13 @@ void add_folder(const fs::path& folder, std::vector<fs::path>& logs) {
 
 }  // namespace
 
-JoinedLogs::JoinedLogs(const std::vector<fs::path>& paths) {
+GivenDefinitions given_definitions(const LogOptions& options) {
+  if (options.definitions.empty()) return nullptr;
+  return std::make_shared<const MessageDefinitions>(options.definitions);
+}
+
+JoinedLogs::JoinedLogs(const std::vector<fs::path>& paths, GivenDefinitions definitions)
+    : definitions_(std::move(definitions)) {
   std::error_code ignored;
   for (const fs::path& one : paths) {
     if (fs::is_directory(one, ignored) && !is_message_log(one)) {
@@ -114,6 +120,7 @@ LogEnd JoinedLogs::read(const LogVisit& visit,
     std::map<std::size_t, LogTopic> topics;
     LogVisit one;
     one.elements = visit.elements;
+    one.definitions = definitions_.get();
     if (visit.wanted) {
       one.wanted = [&](const LogTopic& topic) { return visit.wanted(own(topic)); };
     }

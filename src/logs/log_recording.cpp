@@ -279,9 +279,10 @@ void count_left_out(const WheelRows& rows, const GatheredLog& gathered, const Si
   count(gathered.wrong_poses, "poses without a valid rotation left out", result);
 }
 
-LogRecording recording_of(const std::vector<fs::path>& paths, const fs::path& map_file) {
+LogRecording recording_of(const std::vector<fs::path>& paths, const fs::path& map_file,
+                          const LogOptions& options) {
   const LogMap map = read_log_map(map_file);
-  const JoinedLogs logs(paths);
+  const JoinedLogs logs(paths, given_definitions(options));
   GatheredLog gathered = gather(logs, map);
   LogRecording result;
   result.model = map.model;
@@ -328,13 +329,15 @@ LogRecording recording_of(const std::vector<fs::path>& paths, const fs::path& ma
 
 }  // namespace
 
-LogRecording read_log_recording(const fs::path& log, const fs::path& map_file) {
-  return read_log_recording(std::vector<fs::path>{log}, map_file);
+LogRecording read_log_recording(const fs::path& log, const fs::path& map_file,
+                                const LogOptions& options) {
+  return read_log_recording(std::vector<fs::path>{log}, map_file, options);
 }
 
-LogRecording read_log_recording(const std::vector<fs::path>& logs, const fs::path& map_file) {
+LogRecording read_log_recording(const std::vector<fs::path>& logs, const fs::path& map_file,
+                                const LogOptions& options) {
   try {
-    return recording_of(logs, map_file);
+    return recording_of(logs, map_file, options);
   } catch (const InputError& error) {
     // Names of fields and frames are anybody's, line ends and all.
     const std::string text = error.what();

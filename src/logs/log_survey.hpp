@@ -42,7 +42,12 @@ struct LogSurvey {
   [[nodiscard]] double upright_share(const FrameFacts& frame, const std::string& base) const;
 };
 
-[[nodiscard]] LogSurvey survey_log(const std::filesystem::path& log);
+[[nodiscard]] LogSurvey survey_log(const std::filesystem::path& log,
+                                   const GivenDefinitions& definitions);
+
+/// Throws InputError where the log is damaged.
+[[nodiscard]] LogInspection inspect_one_log(const std::filesystem::path& log,
+                                            const GivenDefinitions& definitions);
 
 /// Of a table whose rows are not in order of time, or stand twice: its fields as in that order.
 void put_in_order(LogSurvey& survey, const std::filesystem::path& table);

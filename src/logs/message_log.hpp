@@ -17,6 +17,7 @@
 #pragma once
 
 #include "logs/field_tree.hpp"
+#include "logs/message_definitions.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -55,6 +56,8 @@ struct LogVisit {
   std::function<void(const LogMessage&)> message;
   /// Of lists of plain numbers: how many elements are kept; of lists of groups and texts all.
   std::size_t elements = 4096;
+  /// Of types that a bag of ROS 2 does not define itself; nothing: none.
+  const MessageDefinitions* definitions = nullptr;
 };
 
 struct LogEnd {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "logs/ros2_definition.hpp"
 
+#include "logs/message_definitions.hpp"
 #include "logs/ros2_standard.hpp"
 
 #include <algorithm>
@@ -83,13 +84,16 @@ std::string_view time_of_ros1(std::string_view type) {
 /// The part of a definition that is of one type.
 struct Section {
   std::string_view text;
-  std::size_t line = 1;  // where it begins
-  bool standard = false;
+  std::size_t line = 1;      // where it begins
+  std::string_view of = {};  // whose lines they are; empty: nobody's whom a user could ask
 };
+
+constexpr std::string_view kOfBag = "its definition";
 
 class Parser {
  public:
-  Parser(std::string_view type, std::string_view text, bool ros1) : ros1_(ros1) {
+  Parser(std::string_view type, std::string_view text, bool ros1, const MessageDefinitions* given)
+      : ros1_(ros1), given_(given) {
     if (text.size() > kLongestText) {
       throw DefinitionError("its definition has more than " + std::to_string(kLongestText) +
                             " bytes");
@@ -105,8 +109,9 @@ class Parser {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw DefinitionError((standard_ ? "" : "line " + std::to_string(line_) + " of ") +
-                          std::string("its definition: ") + what);
+    const std::string of(of_.empty() ? kOfBag : of_);
+    throw DefinitionError((of_.empty() ? "" : "line " + std::to_string(line_) + " of ") + of +
+                          ": " + what);
   }
 
   void split(const std::string& type, std::string_view text) {
@@ -116,7 +121,7 @@ class Parser {
     std::size_t first = 1;
     const auto end_section = [&](const char* end) {
       sections_.try_emplace(name,
-                            Section{{begin, static_cast<std::size_t>(end - begin)}, first, false});
+                            Section{{begin, static_cast<std::size_t>(end - begin)}, first, kOfBag});
     };
     while (!text.empty()) {
       const char* const at = text.data();
@@ -151,9 +156,12 @@ class Parser {
       if (const auto known = sections_.find(name); known != sections_.end()) {
         return {{name, known->second}};
       }
+      if (const auto* given = given_ == nullptr ? nullptr : given_->find(name)) {
+        return {{name, Section{given->text, 1, given->file}}};
+      }
       const std::string_view text = ros1_ ? time_of_ros1(name) : standard_ros2_definition(name);
       if (text.data() != nullptr) {
-        return {{name, Section{text, 1, true}}};
+        return {{name, Section{text, 1}}};
       }
     }
     return std::nullopt;
@@ -163,7 +171,8 @@ class Parser {
     const std::string package = package_.empty() ? type.substr(0, type.find('/')) : package_.back();
     const auto found = find(type, package);
     if (!found && package_.empty()) {
-      throw DefinitionError("the bag has no definition of " + type);
+      throw DefinitionError("the bag has no definition of " + type +
+                            "; --definitions takes its .msg file");
     }
     if (!found) fail("type " + type + " is not defined");
     const auto& [name, section] = *found;
@@ -177,12 +186,12 @@ class Parser {
     layout_.groups.emplace_back().type = name;
     done_.emplace(name, at);
     package_.push_back(name.substr(0, name.find('/')));
-    const auto [line, standard] = std::pair(line_, standard_);
+    const auto [line, of] = std::pair(line_, of_);
     Ros2Group filled = fields_of(section, depth);
     filled.type = name;
     layout_.groups[at] = std::move(filled);
     line_ = line;
-    standard_ = standard;
+    of_ = of;
     package_.pop_back();
     return at;
   }
@@ -190,7 +199,7 @@ class Parser {
   Ros2Group fields_of(const Section& section, std::size_t depth) {
     Ros2Group result;
     line_ = section.line - 1;
-    standard_ = section.standard;
+    of_ = section.of;
     std::string_view text = section.text;
     while (!text.empty()) {
       ++line_;
@@ -291,10 +300,11 @@ class Parser {
 
   std::map<std::string, Section> sections_;
   bool ros1_;
+  const MessageDefinitions* given_;
   std::map<std::string, std::size_t> done_;  // where in the layout; depth is 0 while it is filled
   std::vector<std::string> package_;         // of the types that are being read
   std::size_t line_ = 0;
-  bool standard_ = false;
+  std::string_view of_ = kOfBag;  // Section::of
   Ros2Layout layout_;
 };
 
@@ -330,12 +340,13 @@ std::string ros2_type_name(std::string_view type) {
   return std::string(type.substr(0, first)) + std::string(type.substr(first + 4));
 }
 
-Ros2Layout parse_ros2_definition(std::string_view type, std::string_view text) {
-  return Parser(type, text, false).layout(type);
+Ros2Layout parse_ros2_definition(std::string_view type, std::string_view text,
+                                 const MessageDefinitions* given) {
+  return Parser(type, text, false, given).layout(type);
 }
 
 Ros2Layout parse_ros1_definition(std::string_view type, std::string_view text) {
-  return Parser(type, text, true).layout(type);
+  return Parser(type, text, true, nullptr).layout(type);
 }
 
 }  // namespace trussmap

@@ -13,7 +13,8 @@
 //   string frame_id
 //
 // They become a layout: groups of fields in the order in which a message has them, each once. A
-// type that the text lacks is that of the standard messages (ros2_standard.hpp).
+// type that the text lacks is one that was given (message_definitions.hpp), or that of the standard
+// messages (ros2_standard.hpp).
 //
 // ROS 1 writes them alike. There `time` and `duration` are plain types, here groups of `sec` and
 // `nanosec`, as in ROS 2, so that a path leads to the same in both; `byte` has a sign; `Header` is
@@ -34,6 +35,8 @@
 #include <vector>
 
 namespace trussmap {
+
+class MessageDefinitions;
 
 /// Why a definition cannot be used: "line 3 of its definition: ...".
 class DefinitionError : public std::runtime_error {
@@ -90,8 +93,10 @@ struct Ros2Layout {
 /// "std_msgs/msg/Header" and "std_msgs/Header" are the latter.
 [[nodiscard]] std::string ros2_type_name(std::string_view type);
 
-/// Of a message of this type; with a blank text of the standard one. Throws DefinitionError.
-[[nodiscard]] Ros2Layout parse_ros2_definition(std::string_view type, std::string_view text);
+/// Of a message of this type; with a blank text of the given or the standard one. Throws
+/// DefinitionError.
+[[nodiscard]] Ros2Layout parse_ros2_definition(std::string_view type, std::string_view text,
+                                               const MessageDefinitions* given = nullptr);
 
 /// The same of ROS 1, whose text has all types within. Throws DefinitionError.
 [[nodiscard]] Ros2Layout parse_ros1_definition(std::string_view type, std::string_view text);

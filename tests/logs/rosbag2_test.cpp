@@ -238,7 +238,8 @@ TEST(Rosbag2, TablesAreNotTrusted) {
   EXPECT_EQ(said(topic + "INSERT INTO messages VALUES (7, 2, 5, x'00')"), "cut off ");
   const ReadLog log = testing::read_lines(scratch.path() / "a.db3");
   ASSERT_EQ(log.end.topics.size(), 3U);
-  EXPECT_EQ(log.end.topics[1].unread, "the bag has no definition of my_msgs/A");
+  EXPECT_EQ(log.end.topics[1].unread,
+            "the bag has no definition of my_msgs/A; --definitions takes its .msg file");
   EXPECT_EQ(log.end.topics[1].messages, 1U);
   EXPECT_EQ(log.end.topics[2].unread, "xcdr");
 }

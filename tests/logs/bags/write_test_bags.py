@@ -9,6 +9,7 @@ printed. VARIANT "" lists them.
 import math
 import os
 import random
+import re
 import sys
 
 from bag_writer import BagWriter
@@ -288,6 +289,21 @@ def ros1_small(folder, **options):
     return path, bag.flat(log_times_alone=True)
 
 
+def definitions_apart(folder, write):
+    """The bag has no definitions; those of its own types are files of a workspace beside it."""
+    parts = re.split(r"^=+\nMSG: *(\S+) *\n", EVERYTHING, flags=re.MULTILINE)
+    files = {"my_msgs/Everything": parts[0], "my_msgs/Wide": WIDE, **dict(zip(parts[1::2], parts[2::2]))}
+    for name, text in files.items():
+        package, kind = name.split("/")
+        if package != "my_msgs":
+            continue
+        within = os.path.join(folder, "src", package, "msg" if kind != "Wide" else "")
+        os.makedirs(within, exist_ok=True)
+        with open(os.path.join(within, kind + ".msg"), "w", encoding="utf-8") as file:
+            file.write(text)
+    return write()
+
+
 VARIANTS = {
     "mcap_plain": lambda f: mcap(f, chunk_size=5000),
     "mcap_lz4": lambda f: mcap(f, compression="lz4", chunk_size=5000),
@@ -297,6 +313,8 @@ VARIANTS = {
     "mcap_without_summary": lambda f: mcap(f, chunk_size=5000, summary=False, index=False),
     "mcap_without_checksums": lambda f: mcap(f, compression="lz4", chunk_size=900, crc=False),
     "mcap_without_definitions": lambda f: mcap(f, definitions=False, standard=True),
+    "mcap_definitions_apart": lambda f: definitions_apart(f, lambda: mcap(f, definitions=False)),
+    "db3_definitions_apart": lambda f: definitions_apart(f, lambda: db3(f, 3)),
     "mcap_idl": lambda f: mcap(f, standard=True, topics={"schema_encoding": "ros2idl"}),
     "mcap_as_rosbag2": lambda f: mcap(f, compression="zstd", data_crc=False),
     "mcap_big_endian": lambda f: mcap(f, compression="lz4", topics={"big_endian": True}),
