@@ -147,6 +147,7 @@ Guessed guess_by_names(const std::vector<NamedFacts>& all, bool table,
   text.append(truths);
   found.places = sightings || fixes || truth;
   guess_covariates(fields, text);
+  list_unnamed(fields, text);
   return found;
 }
 

@@ -71,6 +71,11 @@ std::optional<int> guess_odometry(FreeFields& fields, MapText& text);
 /// Beside wheels: what sums them up, or estimates, is no sensor of its own.
 void pass_over_odometries(FreeFields& fields, MapText& text);
 void guess_headings(FreeFields& fields, MapText& text);
+/// Of tables without a header: left and right, if two columns look like wheels.
+[[nodiscard]] std::optional<std::pair<const NamedFacts*, const NamedFacts*>> unnamed_wheels(
+    const FreeFields& fields);
+/// What is left of their columns, as comments.
+void list_unnamed(const FreeFields& fields, MapText& text);
 /// Whether there are some.
 bool guess_sightings(FreeFields& fields, MapText& text);
 bool guess_fixes(FreeFields& fields, MapText& text);
