@@ -101,11 +101,20 @@ void feed_signal(Gathering& g, const SignalMap& signal, Signal& into) {
   });
 }
 
+/// Of a message that has both, as nav_msgs/Odometry.
+void compare_twist(Gathering& g, const FedMessage& fed) {
+  if (!fed.message.member("pose") || !fed.message.member("twist")) return;
+  const auto twist = twist_of(fed.message);
+  const auto pose = pose_of(fed.message);
+  if (twist && pose && pose->turned) g.to.beside.add(fed.t, *twist, *pose);
+}
+
 void feed_twist(Gathering& g) {
   const OdometryMap& odometry = g.map.odometry;
   g.feeds.add({odometry.twist, odometry.file, odometry.line}, [&g](const FedMessage& fed) {
     const auto twist = twist_of(fed.field);
     if (twist) g.to.twists.push_back({fed.t + nanoseconds(g.map.odometry.clock), *twist});
+    compare_twist(g, fed);
     return twist.has_value();
   });
 }
@@ -153,6 +162,7 @@ void feed_pose(Gathering& g, const AskedField& asked, double clock,
     }
     if (const auto twist = odometry ? twist_of(fed.message) : std::nullopt) {
       g.to.twists_move = g.to.twists_move || twist->ahead != 0.0 || twist->turn != 0.0;
+      compare_twist(g, fed);
     }
     into.push_back(
         {fed.t + nanoseconds(clock), pose->position.x(), pose->position.y(), pose->yaw()});

@@ -83,6 +83,7 @@ struct OdometryMap {
   double speed_unit = 1.0;                 ///< m/s
   double turn_rate_unit = 1.0;             ///< rad/s, with the sign
   double clock = 0.0;
+  bool compare = false;  ///< beside [wheels]: it drives nothing, but is compared with them
   std::size_t line = 0;
 };
 

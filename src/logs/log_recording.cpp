@@ -1,14 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "drive/body_motion.hpp"
 #include "logs/byte_reader.hpp"
 #include "logs/calendar.hpp"
 #include "logs/gathered_log.hpp"
 #include "logs/seen_landmarks.hpp"
 #include "logs/sensor_frames.hpp"
+#include "logs/source_agreement.hpp"
 #include "logs/tangent_plane.hpp"
 #include "logs/wheel_rows.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/log_files.hpp"
+#include "trussmap/robot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -180,6 +183,57 @@ void warn_of_turns(const Drive& drive, double wheelbase, LogRecording& result) {
   }
 }
 
+/// The wheels, whatever they are, beside an odometry that the map has as well.
+void compare_wheels(const LogMap& map, const GatheredLog& gathered,
+                    const std::vector<std::int64_t>& bounds, const Drive& drive,
+                    LogRecording& result) {
+  const OdometryRows odometry = odometry_rows(map, gathered, bounds);
+  if (odometry.left.empty()) return;
+  Recording alone;
+  alone.drive = drive;
+  MotionRows wheels;
+  try {
+    wheels = with_wheels(std::move(alone), map.model.robot).drive;
+  } catch (const InputError&) {  // a reading that no wheel can have, which check names
+    return;
+  }
+  const Robot& robot = map.model.robot;
+  const auto first = std::find(bounds.begin(), bounds.end(), odometry.bounds.front());
+  const auto before = static_cast<std::size_t>(first - bounds.begin());
+  constexpr std::int64_t kWindow = kNanosecondsPerSecond;
+  MotionAgreement agreement;
+  PlanarStep a;
+  PlanarStep b;
+  std::int64_t begin = odometry.bounds.front();
+  for (std::size_t k = 0; k < odometry.left.size(); ++k) {
+    const BodyMotion by_wheels = body_motion(wheels, before + k, robot);
+    const BodyMotion said = body_motion({odometry.left[k], odometry.right[k]}, robot, 0.0);
+    a += {by_wheels.forward, 0.0, by_wheels.turn};
+    b += {said.forward, 0.0, said.turn};
+    if (odometry.bounds[k + 1] - begin < kWindow) continue;
+    agreement.add_window(a, b);
+    a = b = {};
+    begin = odometry.bounds[k + 1];
+  }
+  for (std::string& one :
+       agreement.contradictions("what the wheels say",
+                                "the odometry (line " + std::to_string(map.odometry.line) + ")")) {
+    result.warnings.push_back(std::move(one));
+  }
+}
+
+/// What an odometry says twice, and what it and wheels say.
+void warn_of_odometry(const LogMap& map, const GatheredLog& gathered,
+                      const std::vector<std::int64_t>& bounds, const Drive& drive,
+                      LogRecording& result) {
+  if (map.odometry.line == 0) return;
+  const std::string& path = map.odometry.twist.empty() ? map.odometry.pose : map.odometry.twist;
+  for (std::string& one : gathered.beside.contradictions(path)) {
+    result.warnings.push_back(std::move(one));
+  }
+  if (!map.wheels.empty()) compare_wheels(map, gathered, bounds, drive, result);
+}
+
 void warn_of_far_fixes(const Recording& recording, LogRecording& result) {
   constexpr double kFar = 1e5;  // m
   for (const Fix& one : recording.fixes) {
@@ -319,6 +373,7 @@ LogRecording recording_of(const std::vector<fs::path>& paths, const fs::path& ma
   warn_of_clock(map, gathered, result);
   warn_of_far_fixes(recording, result);
   warn_of_turns(drive, map.model.robot.wheelbase, result);
+  warn_of_odometry(map, gathered, rows.bounds, drive, result);
   if (recording.sightings.empty() && recording.fixes.empty() && recording.truth.empty()) {
     throw InputError(map_file.string(), 0,
                      "ties the drive to no place: no sighting, fix or truth is within it, expected "

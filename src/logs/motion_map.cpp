@@ -102,6 +102,7 @@ OdometryMap odometry_of(const toml::table& node, const std::string& file) {
   odometry.twist = table.text("twist");
   odometry.pose = table.text("pose");
   odometry.clock = table.clock();
+  odometry.compare = table.flag("compare", false);
   odometry.fields = pose_fields_of(table);
   odometry.speed = table.text("speed");
   odometry.turn_rate = table.text("turn_rate");

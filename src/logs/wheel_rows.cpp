@@ -82,26 +82,30 @@ std::vector<NamedSignal> wheels_of(std::vector<TimedFieldPose> poses, double whe
   return wheels;
 }
 
+std::vector<NamedSignal> odometry_wheels(const LogMap& map, const GatheredLog& log,
+                                         std::vector<std::string>& warnings) {
+  const double wheelbase = map.model.robot.wheelbase;
+  const bool twist = !map.odometry.twist.empty() || !map.odometry.speed.empty();
+  if (twist) return wheels_of(log.twists, wheelbase, warnings);
+  if (!is_frame_path(map.odometry.pose)) return wheels_of(log.odometry, wheelbase);
+  return wheels_of(
+      poses_along(map.odometry.pose, log.frames, map, map.odometry.line, map.odometry.clock),
+      wheelbase);
+}
+
 std::vector<NamedSignal> all_wheels(const LogMap& map, GatheredLog& log, WheelRows& rows) {
   const Robot& robot = map.model.robot;
   const bool two = has_two_wheels(robot);
   const std::vector<std::string> expected =
       two ? std::vector<std::string>{"left", "right"} : robot.columns;
-  if (map.odometry.line > 0) {
+  if (map.odometry.line > 0 && map.wheels.empty()) {
     if (!two) {
       throw InputError(map.file.string(), map.odometry.line,
                        fmt::format("[odometry] gives the travels of two wheels, drive {} has "
                                    "others, expected [wheels.NAME] for each of its columns",
                                    name_of(robot.drive)));
     }
-    const bool twist = !map.odometry.twist.empty() || !map.odometry.speed.empty();
-    if (twist) return wheels_of(log.twists, robot.wheelbase, rows.warnings);
-    std::vector<TimedFieldPose> poses = log.odometry;
-    if (is_frame_path(map.odometry.pose)) {
-      poses =
-          poses_along(map.odometry.pose, log.frames, map, map.odometry.line, map.odometry.clock);
-    }
-    return wheels_of(std::move(poses), robot.wheelbase);
+    return odometry_wheels(map, log, rows.warnings);
   }
   std::vector<NamedSignal> wheels;
   for (const std::string& name : expected) {
@@ -225,6 +229,25 @@ std::vector<TimedFieldPose> poses_along(const std::string& path, const FrameTree
                                  names.child, names.parent));
   }
   return poses;
+}
+
+OdometryRows odometry_rows(const LogMap& map, const GatheredLog& log,
+                           const std::vector<std::int64_t>& bounds) {
+  std::vector<std::string> unused;
+  std::vector<NamedSignal> wheels = odometry_wheels(map, log, unused);
+  OdometryRows rows;
+  for (NamedSignal& one : wheels) one.signal.finish();
+  const Signal& times = wheels.front().signal;
+  if (times.size() < 3) return rows;
+  for (const std::int64_t t : bounds) {
+    if (t < times.times().front() || t > times.times().back()) continue;
+    rows.bounds.push_back(t);
+    if (rows.bounds.size() < 2) continue;
+    const std::int64_t before = rows.bounds[rows.bounds.size() - 2];
+    rows.left.push_back(wheels[0].signal.sum(before, t));
+    rows.right.push_back(wheels[1].signal.sum(before, t));
+  }
+  return rows;
 }
 
 WheelRows wheel_rows(const LogMap& map, GatheredLog& log) {
