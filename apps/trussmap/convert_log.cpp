@@ -178,6 +178,9 @@ void inspect_log_files(const std::vector<fs::path>& logs, const fs::path& map,
   print_clocks(inspection);
   print_frames(inspection);
   print_fields(inspection);
+  for (const LogCount& one : inspection.passed_over) {
+    fmt::print("\n  {} {}\n", one.number, escaped_controls(one.what));
+  }
   if (!inspection.cut_off.empty()) {
     fmt::print("\n{}", warning_text("the log is cut off " + inspection.cut_off +
                                     "; what is before is read"));

@@ -121,6 +121,7 @@ struct LogInspection {
   std::string cut_off;                     ///< where the log ends too soon; empty: it is whole
   std::string map;                         ///< a first map.toml, whose guesses are its comments
   std::vector<LogClockFacts> clocks = {};  ///< of several logs, one each; else none
+  std::vector<LogCount> passed_over = {};  ///< records that belong to no topic
 };
 
 /// Throws InputError where the log is damaged.

@@ -119,6 +119,17 @@ void feed_twist(Gathering& g) {
   });
 }
 
+/// The velocity of a body whose wheels all steer, by theirs.
+void feed_modules(Gathering& g) {
+  const OdometryMap& odometry = g.map.odometry;
+  g.feeds.add({odometry.modules, odometry.file, odometry.line},
+              [&g, &odometry](const FedMessage& fed) {
+                const auto twist = twist_of_modules(fed.field, odometry.places);
+                if (twist) g.to.twists.push_back({fed.t + nanoseconds(odometry.clock), *twist});
+                return twist.has_value();
+              });
+}
+
 /// Velocities by their fields.
 void feed_speeds(Gathering& g) {
   const OdometryMap& odometry = g.map.odometry;
@@ -228,6 +239,8 @@ void feed_all(Gathering& g) {
   const OdometryMap& odometry = g.map.odometry;
   if (!odometry.twist.empty()) {
     feed_twist(g);
+  } else if (!odometry.modules.empty()) {
+    feed_modules(g);
   } else if (!odometry.speed.empty()) {
     feed_speeds(g);
   } else if (odometry.line > 0) {

@@ -252,6 +252,9 @@ LogInspection inspect_logs(const std::vector<fs::path>& paths, const LogOptions&
       result.cut_off +=
           (result.cut_off.empty() ? "" : "; ") + one.survey.cut_off + " (" + one.name + ")";
     }
+    for (const LogCount& some : one.survey.passed_over) {
+      result.passed_over.push_back({some.number, some.what + " (" + one.name + ")"});
+    }
     surveys.push_back(std::move(one.survey));
   }
   result.map = guessed_joined_map(surveys, result.clocks, landmarks);

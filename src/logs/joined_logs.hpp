@@ -22,6 +22,8 @@ namespace trussmap {
 /// Throws InputError.
 [[nodiscard]] GivenDefinitions given_definitions(const LogOptions& options);
 
+[[nodiscard]] std::vector<LogCount> counts_of(const std::vector<PassedOver>& passed_over);
+
 class JoinedLogs {
  public:
   /// Throws InputError: none, one that is no log, one given twice, a folder without logs.

@@ -79,6 +79,7 @@ class Surveyor {
       result.frames.push_back(facts);
     }
     result.cut_off = end.cut_off;
+    result.passed_over = counts_of(end.passed_over);
     return result;
   }
 
@@ -221,7 +222,12 @@ LogInspection inspect_one_log(const std::filesystem::path& log,
   for (const FrameFacts& one : survey.frames) {
     frames.push_back({one.parent, one.child, one.is_static, one.samples});
   }
-  return {std::move(survey.topics), std::move(frames), std::move(survey.cut_off), std::move(map)};
+  return {std::move(survey.topics),
+          std::move(frames),
+          std::move(survey.cut_off),
+          std::move(map),
+          {},
+          std::move(survey.passed_over)};
 }
 
 }  // namespace trussmap

@@ -331,6 +331,7 @@ void count_left_out(const WheelRows& rows, const GatheredLog& gathered, const Si
   count(outside_fixes, "fixes before or after the drive left out", result);
   count(gathered.lost_fixes, "fixes that the receiver itself calls none left out", result);
   count(gathered.wrong_poses, "poses without a valid rotation left out", result);
+  for (LogCount& one : counts_of(gathered.end.passed_over)) result.counts.push_back(std::move(one));
 }
 
 LogRecording recording_of(const std::vector<fs::path>& paths, const fs::path& map_file,

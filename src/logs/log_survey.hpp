@@ -36,6 +36,7 @@ struct LogSurvey {
   bool table = false;
   std::string time_unit = {};  ///< of a table's times, where logs beside it tell; empty: a guess
   std::string cut_off;
+  std::vector<LogCount> passed_over = {};
 
   /// How much of the frame's z axis stands up in `base`, 0 to 1 (root mean square), if the frames
   /// between them are turned as at the end.

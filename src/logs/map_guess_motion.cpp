@@ -118,9 +118,9 @@ std::optional<int> guess_wheels(FreeFields& fields, MapText& text) {
   static const FreeFields::Words kTravel{"enc", "tick",   "count", "dist",
                                          "pos", "travel", "odo",   "wheel"};
   static const FreeFields::Words kSpeed{"vel", "speed", "rate"};
-  static const FreeFields::Words kNot{"power",    "current", "volt",    "target",
-                                      "goal",     "range",   "tag",     "temp",
-                                      "setpoint", "command", "applied", "output"};
+  static const FreeFields::Words kNot{"power",   "current", "volt",  "target",   "goal",
+                                      "range",   "tag",     "temp",  "setpoint", "command",
+                                      "applied", "output",  "steer", "azimuth"};
   FreeFields::Words slow = kNot;
   slow.insert(slow.end(), kSpeed.begin(), kSpeed.end());
   std::optional<WheelFields> found = wheel_fields(fields, kTravel, slow);

@@ -49,8 +49,12 @@ void require_messages(const fs::path& path, const LogEnd& end) {
   const bool any = std::any_of(end.topics.begin(), end.topics.end(),
                                [](const LogTopic& topic) { return topic.messages > 0; });
   if (any) return;
+  std::string beside;
+  for (const PassedOver& one : end.passed_over) {
+    beside += ", but " + std::to_string(one.number) + " " + one.what;
+  }
   throw InputError(path.string(), 0,
-                   "holds no messages" +
+                   "holds no messages" + beside +
                        (end.cut_off.empty() ? "" : ": it is cut off " + end.cut_off) +
                        ", expected a log with some");
 }

@@ -60,9 +60,16 @@ struct LogVisit {
   const MessageDefinitions* definitions = nullptr;
 };
 
+/// So many records of a kind that no topic has.
+struct PassedOver {
+  std::uint64_t number = 0;
+  std::string what;  ///< in the plural: "records of entries that were not started"
+};
+
 struct LogEnd {
   std::vector<LogTopic> topics;  ///< with all their messages counted
   std::string cut_off;           ///< "at byte 123: ends in the middle of a chunk"; empty: whole
+  std::vector<PassedOver> passed_over = {};
 };
 
 /// Bytes that one chunk, record or message may have once decompressed: a size in a file is an
