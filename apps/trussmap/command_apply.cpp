@@ -46,7 +46,7 @@ void run_apply(ApplyCommand options) {
   }
   if (options.epoch && options.mcap.empty()) throw UsageError("apply: --epoch goes with --mcap");
   options.input.recordings = {options.recording};
-  const ModelRecordings input = read_model_recordings(options.input);
+  const ModelRecordings input = read_model_recordings(options.input, true);
   for (const std::string& one : unfitted_in_words(input.model)) {
     fmt::print("{}", warning_text(one));
   }

@@ -209,6 +209,12 @@ void convert_logs(const std::vector<fs::path>& logs, const fs::path& out, const 
   for (const LogCount& one : read.counts) fmt::print("  {:>7} {}\n", one.number, one.what);
   if (!read.warnings.empty()) fmt::print("\n");
   for (const std::string& one : read.warnings) fmt::print("{}", warning_text(one));
+  const Recording& made = read.recording;
+  if (made.sightings.empty() && made.fixes.empty() && made.truth.empty()) {
+    fmt::print("\nnext:\n  trussmap apply {0} --model {0}/model.toml --out poses.csv\n",
+               out.string());
+    return;
+  }
   fmt::print(
       "\nnext:\n  trussmap check {0} --model {0}/model.toml\n"
       "  trussmap discover {0} --model {0}/model.toml --out fitted.toml\n",

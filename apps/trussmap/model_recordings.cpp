@@ -104,19 +104,19 @@ void check_stretches(const std::vector<Recording>& recordings,
 
 }  // namespace
 
-std::vector<Recording> read_recordings(const std::vector<std::string>& folders) {
+std::vector<Recording> read_recordings(const std::vector<std::string>& folders, bool drive_alone) {
   std::vector<Recording> result;
   result.reserve(folders.size());
-  for (const std::string& folder : folders) result.push_back(read_recording(folder));
+  for (const std::string& folder : folders) result.push_back(read_recording(folder, drive_alone));
   return result;
 }
 
-ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
-  const std::vector<Recording> read = read_recordings(options.recordings);
+ModelRecordings read_model_recordings(const ModelRecordingsOptions& options, bool drive_alone) {
+  const std::vector<Recording> read = read_recordings(options.recordings, drive_alone);
   Model model = read_model(options.model, read);
   std::vector<DrivenRecording> recordings = with_wheels(read, model.robot);
   check_stretches(read, options.exclude);
-  warn_of_mistakes(read, model, options.model);
+  warn_of_mistakes(read, model, options.model, !drive_alone);
   PreparedRecordings prepared =
       prepare_recordings(std::move(recordings), model, fit_options(options), options.every);
   return {std::move(prepared), std::move(model)};

@@ -45,11 +45,14 @@ struct ModelRecordings : PreparedRecordings {
 };
 
 /// One recording per folder, in their order. Throws InputError.
-[[nodiscard]] std::vector<Recording> read_recordings(const std::vector<std::string>& folders);
+[[nodiscard]] std::vector<Recording> read_recordings(const std::vector<std::string>& folders,
+                                                     bool drive_alone = false);
 
 /// Reads them, and thins out frames whose errors last from one to the next (fit_model.hpp).
 /// Throws InputError, with the model file's line where an effect cannot be applied.
-[[nodiscard]] ModelRecordings read_model_recordings(const ModelRecordingsOptions& options);
+/// `drive_alone`: of recordings that may have a drive and nothing else.
+[[nodiscard]] ModelRecordings read_model_recordings(const ModelRecordingsOptions& options,
+                                                    bool drive_alone = false);
 
 /// --without, --exclude and --gate; the effects are fitted.
 [[nodiscard]] FitOptions fit_options(const ModelRecordingsOptions& options);

@@ -8,6 +8,7 @@
 #include "logs/sensor_frames.hpp"
 #include "logs/source_agreement.hpp"
 #include "logs/tangent_plane.hpp"
+#include "logs/untied_drive.hpp"
 #include "logs/wheel_rows.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/log_files.hpp"
@@ -376,9 +377,9 @@ LogRecording recording_of(const std::vector<fs::path>& paths, const fs::path& ma
   warn_of_turns(drive, map.model.robot.wheelbase, result);
   warn_of_odometry(map, gathered, rows.bounds, drive, result);
   if (recording.sightings.empty() && recording.fixes.empty() && recording.truth.empty()) {
-    throw InputError(map_file.string(), 0,
-                     "ties the drive to no place: no sighting, fix or truth is within it, expected "
-                     "[[sightings]], [fixes] or [truth]");
+    for (std::string& one : untied_warnings(drive, map.model.robot)) {
+      result.warnings.push_back(std::move(one));
+    }
   }
   return result;
 }
