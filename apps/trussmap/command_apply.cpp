@@ -46,7 +46,7 @@ void run_apply(ApplyCommand options) {
   }
   if (options.epoch && options.mcap.empty()) throw UsageError("apply: --epoch goes with --mcap");
   options.input.recordings = {options.recording};
-  const Session session = read_session(options.input);
+  const Session session = read_session(options.input, true);
   for (const std::string& one : unfitted_in_words(session.model)) {
     fmt::print("{}", warning_text(one));
   }

@@ -51,7 +51,7 @@ void write_mended(const MendedRecording& whole, const std::string& folder) {
 
 /// Whether nothing is found.
 bool recordings_pass(const CheckCommand& options) {
-  const std::vector<Recording> recordings = read_recordings(options.inputs);
+  const std::vector<Recording> recordings = read_recordings(options.inputs, true);
   std::optional<Model> model;
   if (!options.model.empty()) model = read_model(options.model, recordings);
   const Model* const given = model ? &*model : nullptr;

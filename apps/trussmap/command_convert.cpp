@@ -35,6 +35,7 @@ struct ConvertOptions {
   std::vector<std::string> in;
   std::string out;
   std::string map;
+  std::vector<std::string> definitions;
   bool inspect = false;
   ConvertRecordingOptions bag;
   ConvertOdometerOptions odometer;
@@ -125,11 +126,15 @@ void run_convert(ConvertOptions options) {
   const fs::path in = options.in.front();
   const fs::path out = options.out;
   const std::vector<fs::path> logs(options.in.begin(), options.in.end());
+  const LogOptions given{{options.definitions.begin(), options.definitions.end()}};
+  if (!options.definitions.empty() && !options.inspect && options.map.empty()) {
+    throw UsageError("--definitions is for logs, expected --map or --inspect with it");
+  }
   if (options.inspect) {
     if (logs.size() > 1 && !fs::exists(logs.back()) && !is_log(logs.back())) {
       throw UsageError("convert --inspect writes a map.toml alone, expected no OUT (--map FILE)");
     }
-    inspect_log_files(logs, options.map);
+    inspect_log_files(logs, options.map, given);
     return;
   }
   if (options.out.empty()) throw UsageError("convert has nowhere to write to, expected OUT");
@@ -151,7 +156,7 @@ void run_convert(ConvertOptions options) {
   }
   if (!options.map.empty()) {
     check_folder(out);
-    convert_logs(logs, out, options.map);
+    convert_logs(logs, out, options.map, given);
     return;
   }
   const DatasetFormat* const format = dataset_format(in);
@@ -209,7 +214,8 @@ void setup_convert(const Command& app) {
   command
       .add_option(
           "--map", options->map,
-          "IN is a log: MCAP, a rosbag2 (.db3 or its folder), .wpilog, Road Runner's .log, "
+          "IN is a log: MCAP, a rosbag2 (.db3 or its folder), a bag of ROS 1 (.bag), .wpilog, Road "
+          "Runner's .log, "
           "or a table (.csv, .tsv, .txt); FILE (map.toml) says which of its fields are what, and "
           "of several logs by file = \"NAME\" in which one they are. Of a "
           "recording to a bag: FILE is written, and reads the bag back")
@@ -218,6 +224,13 @@ void setup_convert(const Command& app) {
                    "List topics, fields and columns of the log IN, and write a first map (--map, "
                    "else map.toml) with guesses; of several logs also which clock is which, by "
                    "the motion that they have in common");
+  command
+      .add_option("--definitions", options->definitions,
+                  "IN is a bag of ROS 2 that has no definitions of its own types: their .msg files "
+                  "(PACKAGE/NAME.msg or PACKAGE/msg/NAME.msg), or a folder of packages; may be "
+                  "given again")
+      .type_name("DIR|FILE")
+      .one_value_each();
   add_map_yaml(command, options->yaml);
   add_convert_recording(command, options->bag);
   add_convert_odometer(command, options->odometer);

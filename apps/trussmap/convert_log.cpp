@@ -4,7 +4,6 @@
 
 #include "command_line.hpp"
 #include "terminal.hpp"
-#include "trussmap/log_files.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/table.hpp"
@@ -134,6 +133,24 @@ void print_clocks(const LogInspection& log) {
   fmt::print("\n");
 }
 
+/// As they stand in a command.
+std::string given_text(const LogOptions& options) {
+  std::string text;
+  for (const fs::path& one : options.definitions) text += " --definitions " + one.string();
+  return text;
+}
+
+/// What could be read if somebody had its definition: the table has no room for it.
+void print_undefined(const LogInspection& log) {
+  bool any = false;
+  for (const LogTopicFacts& one : log.topics) {
+    if (one.unread.find("--definitions") == std::string::npos) continue;
+    fmt::print("  {}: {}\n", topic_text(one), escaped_controls(one.unread));
+    any = true;
+  }
+  if (any) fmt::print("\n");
+}
+
 std::string names_of(const std::vector<fs::path>& logs) {
   std::string text;
   for (const fs::path& one : logs) text += (text.empty() ? "" : " ") + one.string();
@@ -142,7 +159,8 @@ std::string names_of(const std::vector<fs::path>& logs) {
 
 }  // namespace
 
-void inspect_log_files(const std::vector<fs::path>& logs, const fs::path& map) {
+void inspect_log_files(const std::vector<fs::path>& logs, const fs::path& map,
+                       const LogOptions& options) {
   std::error_code ignored;
   const bool is_there = fs::exists(map.empty() ? fs::path("map.toml") : map, ignored);
   if (is_there && !map.empty()) {
@@ -151,13 +169,18 @@ void inspect_log_files(const std::vector<fs::path>& logs, const fs::path& map) {
   }
   const fs::path to = map.empty() ? fs::path("map.toml") : map;
   const bool one = logs.size() == 1 && (is_log(logs.front()) || !fs::is_directory(logs.front()));
-  const LogInspection inspection = one ? inspect_log(logs.front()) : inspect_logs(logs);
+  const LogInspection inspection =
+      one ? inspect_log(logs.front(), options) : inspect_logs(logs, options);
   if (!is_there) write_file(to, inspection.map);
   fmt::print("{}:\n\n", names_of(logs));
   print_topics(inspection);
+  print_undefined(inspection);
   print_clocks(inspection);
   print_frames(inspection);
   print_fields(inspection);
+  for (const LogCount& one : inspection.passed_over) {
+    fmt::print("\n  {} {}\n", one.number, escaped_controls(one.what));
+  }
   if (!inspection.cut_off.empty()) {
     fmt::print("\n{}", warning_text("the log is cut off " + inspection.cut_off +
                                     "; what is before is read"));
@@ -169,12 +192,13 @@ void inspect_log_files(const std::vector<fs::path>& logs, const fs::path& map) {
   }
   fmt::print(
       "\nwritten: {}. Read it, mend what is wrong, and convert:\n"
-      "  trussmap convert {} OUT --map {}\n",
-      to.string(), names_of(logs), to.string());
+      "  trussmap convert {} OUT --map {}{}\n",
+      to.string(), names_of(logs), to.string(), given_text(options));
 }
 
-void convert_logs(const std::vector<fs::path>& logs, const fs::path& out, const fs::path& map) {
-  const LogRecording read = read_log_recording(logs, map);
+void convert_logs(const std::vector<fs::path>& logs, const fs::path& out, const fs::path& map,
+                  const LogOptions& options) {
+  const LogRecording read = read_log_recording(logs, map, options);
   std::string names;
   for (const fs::path& one : logs) {
     names += (names.empty() ? "" : ", ") + one.filename().string();
@@ -185,6 +209,12 @@ void convert_logs(const std::vector<fs::path>& logs, const fs::path& out, const 
   for (const LogCount& one : read.counts) fmt::print("  {:>7} {}\n", one.number, one.what);
   if (!read.warnings.empty()) fmt::print("\n");
   for (const std::string& one : read.warnings) fmt::print("{}", warning_text(one));
+  const Recording& made = read.recording;
+  if (made.sightings.empty() && made.fixes.empty() && made.truth.empty()) {
+    fmt::print("\nnext:\n  trussmap apply {0} --model {0}/model.toml --out poses.csv\n",
+               out.string());
+    return;
+  }
   fmt::print(
       "\nnext:\n  trussmap check {0} --model {0}/model.toml\n"
       "  trussmap discover {0} --model {0}/model.toml --out fitted.toml\n",

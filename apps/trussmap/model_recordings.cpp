@@ -128,10 +128,10 @@ SessionOptions session_options(const ModelRecordingsOptions& options) {
 
 }  // namespace
 
-std::vector<Recording> read_recordings(const std::vector<std::string>& folders) {
+std::vector<Recording> read_recordings(const std::vector<std::string>& folders, bool drive_alone) {
   std::vector<Recording> result;
   result.reserve(folders.size());
-  for (const std::string& folder : folders) result.push_back(read_recording(folder));
+  for (const std::string& folder : folders) result.push_back(read_recording(folder, drive_alone));
   return result;
 }
 
@@ -140,12 +140,12 @@ void add_stated_noise(const Command& command, ModelRecordingsOptions& options) {
                    "Judge by the noise that the model states, instead of estimating it");
 }
 
-Session read_session(const ModelRecordingsOptions& options) {
-  const std::vector<Recording> read = read_recordings(options.recordings);
+Session read_session(const ModelRecordingsOptions& options, bool drive_alone) {
+  const std::vector<Recording> read = read_recordings(options.recordings, drive_alone);
   Model model = read_model(options.model, read);
   static_cast<void>(with_wheels(read, model.robot));  // what is wrong with them goes first
   check_stretches(read, options.exclude);
-  warn_of_mistakes(read, model, options.model);
+  warn_of_mistakes(read, model, options.model, !drive_alone);
   return open_session(read, std::move(model), session_options(options));
 }
 

@@ -38,10 +38,12 @@ void add_fitted_recordings(const Command& command, ModelRecordingsOptions& optio
 void add_stated_noise(const Command& command, ModelRecordingsOptions& options);
 
 /// One recording per folder, in their order. Throws InputError.
-[[nodiscard]] std::vector<Recording> read_recordings(const std::vector<std::string>& folders);
+[[nodiscard]] std::vector<Recording> read_recordings(const std::vector<std::string>& folders,
+                                                     bool drive_alone = false);
 
 /// Reads them, warns of mistakes, and prepares them as the options say (session.hpp). Throws
-/// InputError, with the model file's line where an effect cannot be applied.
-[[nodiscard]] Session read_session(const ModelRecordingsOptions& options);
+/// InputError, with the model file's line where an effect cannot be applied. `drive_alone`: of
+/// recordings that may have a drive and nothing else.
+[[nodiscard]] Session read_session(const ModelRecordingsOptions& options, bool drive_alone = false);
 
 }  // namespace trussmap::app

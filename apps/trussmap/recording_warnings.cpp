@@ -20,8 +20,12 @@ void print_warnings(const std::vector<CheckFinding>& findings) {
 }
 
 void warn_of_mistakes(const std::vector<Recording>& recordings, const Model& model,
-                      const std::string& model_file) {
-  print_warnings(check_read_recordings(recordings, &model, model_file));
+                      const std::string& model_file, bool to_be_fitted) {
+  std::vector<CheckFinding> findings = check_read_recordings(recordings, &model, model_file);
+  if (!to_be_fitted) {
+    std::erase_if(findings, [](const CheckFinding& one) { return one.kind == "nothing to test"; });
+  }
+  print_warnings(findings);
 }
 
 }  // namespace trussmap::app

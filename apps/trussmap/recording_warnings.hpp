@@ -18,6 +18,6 @@ void print_warnings(const std::vector<CheckFinding>& findings);
 
 /// A line each, on standard error: they are seen although the command may fail.
 void warn_of_mistakes(const std::vector<Recording>& recordings, const Model& model,
-                      const std::string& model_file);
+                      const std::string& model_file, bool to_be_fitted = true);
 
 }  // namespace trussmap::app

@@ -3,8 +3,8 @@
 //
 // Component trussmap::logs.
 //
-// Bags and logs of others: MCAP, rosbag2, WPILib, Road Runner, any table; and bags out of poses and
-// recordings. Link trussmap::logs for it.
+// Bags and logs of others: MCAP, rosbag2, bags of ROS 1, WPILib, Road Runner, any table; and bags
+// out of poses and recordings. Link trussmap::logs for it.
 //
 //   log + map.toml --read_log_recording--> recording + model
 //   log ------------inspect_log----------> what is in it, and a first map.toml
@@ -29,9 +29,15 @@ namespace trussmap {
 // ----------------------------------------
 // In.
 
-/// Whether the path is a log that can be read: an .mcap, a .db3 or a rosbag2's folder, a .wpilog, a
-/// Road Runner .log, or a table (.csv, .tsv, .txt, also with .xz).
+/// Whether the path is a log that can be read: an .mcap, a .db3 or a rosbag2's folder, a .bag of
+/// ROS 1, a .wpilog, a Road Runner .log, or a table (.csv, .tsv, .txt, also with .xz).
 [[nodiscard]] bool is_log(const std::filesystem::path& path);
+
+struct LogOptions {
+  /// Definitions of ROS 2 messages for bags that lack them: PACKAGE/NAME.msg, PACKAGE/msg/NAME.msg,
+  /// or folders in which such files are. What a bag defines itself counts before them.
+  std::vector<std::filesystem::path> definitions = {};
+};
 
 /// So many of something, for a list.
 struct LogCount {
@@ -50,12 +56,14 @@ struct LogRecording {
 /// Reads a log as its map.toml says. Throws InputError: the map's line where it is wrong or asks
 /// for what the log does not have; the log's offset, or a table's line, where it is damaged.
 [[nodiscard]] LogRecording read_log_recording(const std::filesystem::path& log,
-                                              const std::filesystem::path& map);
+                                              const std::filesystem::path& map,
+                                              const LogOptions& options = {});
 /// Of several logs that belong together: tables, or a bag and tables; of a folder all logs in it.
 /// Each table of the map says by `file` which log its fields are of, and each [[time]] which one's
 /// times. Throws InputError too where no log, or more than one, is called like a `file`.
 [[nodiscard]] LogRecording read_log_recording(const std::vector<std::filesystem::path>& logs,
-                                              const std::filesystem::path& map);
+                                              const std::filesystem::path& map,
+                                              const LogOptions& options = {});
 
 /// A field of a log's topic, or a column of a table.
 struct LogFieldFacts {
@@ -113,14 +121,17 @@ struct LogInspection {
   std::string cut_off;                     ///< where the log ends too soon; empty: it is whole
   std::string map;                         ///< a first map.toml, whose guesses are its comments
   std::vector<LogClockFacts> clocks = {};  ///< of several logs, one each; else none
+  std::vector<LogCount> passed_over = {};  ///< records that belong to no topic
 };
 
 /// Throws InputError where the log is damaged.
-[[nodiscard]] LogInspection inspect_log(const std::filesystem::path& log);
+[[nodiscard]] LogInspection inspect_log(const std::filesystem::path& log,
+                                        const LogOptions& options = {});
 /// The same of several that belong together (of a folder: all logs in it), with their clocks: that
 /// of the wheels' log is the reference, and others are compared with it by turns, else by speeds. A
 /// table of landmarks (landmark,x,y) is the map's survey.
-[[nodiscard]] LogInspection inspect_logs(const std::vector<std::filesystem::path>& logs);
+[[nodiscard]] LogInspection inspect_logs(const std::vector<std::filesystem::path>& logs,
+                                         const LogOptions& options = {});
 
 // ----------------------------------------
 // Bags of ROS 2 messages (MCAP, profile ros2) out of poses and recordings: for Foxglove,

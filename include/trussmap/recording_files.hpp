@@ -35,10 +35,10 @@ namespace trussmap {
 /// Texts by the names of their files.
 using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 
-/// The streams that the recording has (a drive always; sightings unless there is none, but truth,
-/// fixes or loops), in place of all that an earlier recording left in the folder. `comment`, if
-/// any, becomes # lines at the top of drive.csv; `beside` are further files, by name and content.
-/// Numbers read back exactly. Throws InputError where read_recording() would refuse the folder.
+/// The streams that the recording has (a drive always, and it may be alone), in place of all that
+/// an earlier recording left in the folder. `comment`, if any, becomes # lines at the top of
+/// drive.csv; `beside` are further files, by name and content. Numbers read back exactly. Throws
+/// InputError where read_recording() would refuse the folder, of a drive alone as one.
 [[nodiscard]] FolderOfFiles recording_folder(const std::filesystem::path& folder,
                                              const Recording& recording,
                                              const std::string& comment = "",

@@ -36,9 +36,9 @@ std::vector<fs::path> listed(const Logs& logs) {
   return std::get<std::vector<fs::path>>(logs);
 }
 
-ReadBag read_bag(const Logs& log, const fs::path& map) {
+ReadBag read_bag(const Logs& log, const fs::path& map, const std::vector<fs::path>& definitions) {
   return unlocked([&] {
-    LogRecording read = read_log_recording(listed(log), map);
+    LogRecording read = read_log_recording(listed(log), map, {definitions});
     ReadBag result{std::make_shared<Recording>(std::move(read.recording)),
                    std::move(read.model),
                    std::move(read.epoch),
@@ -63,15 +63,19 @@ void add_bags(py::module_& module) {
       .def("__repr__", [](const ReadBag& self) {
         return "<trussmap.Bag of " + std::string(py::repr(py::cast(self.recording))) + ">";
       });
-  module.def("read_bag", read_bag, py::arg("log"), py::arg("map"),
-             doc("A bag (MCAP, rosbag2), a WPILib or Road Runner log or a table, or several that "
-                 "belong together, read as their map.toml says (docs/logs.md).",
-                 "read_log_recording")
-                 .c_str());
+  module.def(
+      "read_bag", read_bag, py::arg("log"), py::arg("map"), py::kw_only(),
+      py::arg("definitions") = std::vector<fs::path>(),
+      doc("A bag (MCAP, rosbag2, ROS 1), a WPILib or Road Runner log or a table, or several that "
+          "belong together, read as their map.toml says (docs/logs.md).",
+          "read_log_recording")
+          .c_str());
   module.def(
       "inspect_bag",
-      [](const Logs& log) { return unlocked([&] { return inspect_logs(listed(log)).map; }); },
-      py::arg("log"),
+      [](const Logs& log, const std::vector<fs::path>& definitions) {
+        return unlocked([&] { return inspect_logs(listed(log), {definitions}).map; });
+      },
+      py::arg("log"), py::kw_only(), py::arg("definitions") = std::vector<fs::path>(),
       "A first map.toml for a bag, or for several logs that belong together, whose guesses are to "
       "be read once.");
 }

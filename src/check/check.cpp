@@ -77,7 +77,8 @@ void check_freedom(const std::vector<DrivenRecording>& recordings, CheckFindings
   all.add(!one.sightings.empty() ? "sightings.csv"
           : !one.truth.empty()   ? "truth.csv"
           : !one.fixes.empty()   ? "fixes.csv"
-                                 : "loops.csv",
+          : !one.loops.empty()   ? "loops.csv"
+                                 : "drive.csv",
           "", "nothing to test",
           joined("what was measured exceeds what is unknown by ", dof,
                  " values: a model can hardly fail there"),

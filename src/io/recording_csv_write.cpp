@@ -124,13 +124,9 @@ std::string loops_text(const std::vector<Loop>& loops) {
 
 /// By the readers of what is written, before anything is.
 void require_readable(const FolderOfFiles& whole, const Recording& recording) {
-  NamedTexts files = whole.files;
-  // A drive alone is for who reads it as such; its sightings.csv says that they are missing.
-  const bool alone = recording.sightings.empty();
-  if (alone) std::erase_if(files, [](const auto& file) { return file.first == "sightings.csv"; });
   try {
-    static_cast<void>(recording_in(files, alone));
-    for (const auto& [name, text] : files) {
+    static_cast<void>(recording_in(whole.files, recording.sightings.empty()));
+    for (const auto& [name, text] : whole.files) {
       if (name == "model.toml") static_cast<void>(model_from_text(text, name));
     }
   } catch (const InputError& error) {
@@ -147,9 +143,7 @@ FolderOfFiles recording_folder(const fs::path& folder, const Recording& recordin
   FolderOfFiles whole;
   whole.folder = folder;
   whole.files.emplace_back("drive.csv", drive_text(recording.drive, comment));
-  const bool may_lack =
-      !recording.truth.empty() || !recording.fixes.empty() || !recording.loops.empty();
-  if (!recording.sightings.empty() || !may_lack) {
+  if (!recording.sightings.empty()) {
     whole.files.emplace_back("sightings.csv", sightings_text(recording.sightings));
   }
   if (!recording.survey.empty()) {

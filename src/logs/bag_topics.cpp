@@ -15,21 +15,28 @@ constexpr std::uint64_t kLatest = std::numeric_limits<std::int64_t>::max();
 }  // namespace
 
 BagTopics::Definition BagTopics::definition_of(const BagChannel& channel) {
-  if (channel.encoding != "cdr") {
+  const bool ros1 = channel.encoding == "ros1" && channel.schema_encoding == "ros1msg";
+  if (channel.encoding != "cdr" && !ros1) {
     return {nullptr, channel.encoding.empty() ? "no encoding" : channel.encoding};
   }
   // IDL is read of standard types alone, by their names.
   const std::string& encoding = channel.schema_encoding;
-  const bool here = encoding == "ros2msg" && channel.definition_known;
+  const bool here = (ros1 || encoding == "ros2msg") && channel.definition_known;
   const std::string_view text = here ? channel.definition : std::string_view();
   const auto [place, is_new] =
       definitions_.try_emplace(encoding + '\0' + channel.type + '\0' + std::string(text));
   Definition& found = place->second;
   if (!is_new) return found;
+  if (ros1 && !here) {
+    found.unread = "its definition is too large";
+    return found;
+  }
   try {
-    found.layout = std::make_shared<Ros2Layout>(parse_ros2_definition(channel.type, text));
+    found.layout = std::make_shared<Ros2Layout>(
+        ros1 ? parse_ros1_definition(channel.type, text)
+             : parse_ros2_definition(channel.type, text, visit_->definitions));
   } catch (const DefinitionError& error) {
-    const bool known = encoding.empty() || encoding == "ros2msg";
+    const bool known = ros1 || encoding.empty() || encoding == "ros2msg";
     found.unread = known ? error.what() : encoding;
   }
   return found;
@@ -83,8 +90,12 @@ void BagTopics::deliver(std::size_t number, std::uint64_t log_time, std::uint64_
   }
   topic.type = channel.type;
   try {
-    if (is_zstd(data)) data = decompressor_.zstd_of_any_size(data, kLargestChunk);
-    decode_cdr(data, *channel.layout, visit_->elements, tree_);
+    if (channel.encoding == "ros1") {
+      decode_ros1(data, *channel.layout, visit_->elements, tree_);
+    } else {
+      if (is_zstd(data)) data = decompressor_.zstd_of_any_size(data, kLargestChunk);
+      decode_cdr(data, *channel.layout, visit_->elements, tree_);
+    }
   } catch (const CdrError& error) {
     fail(message + error.what());
   } catch (const DecompressError& error) {

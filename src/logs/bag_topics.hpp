@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// The topics of a ROS bag, in all its files: what readers of MCAP and of SQLite have in common.
+// The topics of a ROS bag, in all its files: what readers of MCAP, SQLite and ROS 1 have in common.
 //
 // Several channels (of one file or of many) may carry the same topic. A channel's messages are
-// decoded by the definition that the bag has of its type, or by the standard one.
+// decoded by the definition that the bag has of its type, or by the given or the standard one.
 #pragma once
 
 #include "logs/decompress.hpp"
@@ -27,8 +27,8 @@ namespace trussmap {
 struct BagChannel {
   std::string topic;
   std::string type;
-  std::string encoding;          ///< of messages: cdr
-  std::string schema_encoding;   ///< ros2msg, ros2idl, ...; empty: none
+  std::string encoding;          ///< of messages: cdr, ros1
+  std::string schema_encoding;   ///< ros2msg, ros1msg, ros2idl, ...; empty: none
   std::string_view definition;   ///< needed during the call alone
   bool definition_known = true;  ///< false: left out as too large
 };

@@ -44,13 +44,21 @@ bool is_low(std::uint32_t code) {
   return code >= 0xDC00U && code < 0xE000U;
 }
 
+/// How the bytes of a message are laid out.
+struct Wire {
+  bool big = false;      // most significant byte first
+  std::size_t wide = 2;  // bytes of a wide character
+  bool ros1 = false;     // without gaps, closing zeros and a byte for what is empty
+};
+
 class Decoder {
  public:
-  Decoder(std::string_view body, bool big, std::size_t wide, const Ros2Layout& layout,
-          std::size_t elements, FieldTree& tree)
+  Decoder(std::string_view body, const Wire& wire, const Ros2Layout& layout, std::size_t elements,
+          FieldTree& tree)
       : body_(body),
-        swap_(big != (std::endian::native == std::endian::big)),
-        wide_(wide),
+        swap_(wire.big != (std::endian::native == std::endian::big)),
+        wide_(wire.wide),
+        ros1_(wire.ros1),
         layout_(&layout),
         elements_(elements),
         tree_(&tree) {}
@@ -62,7 +70,7 @@ class Decoder {
       return;
     }
     group(layout_->groups[0], {}, true);
-    if (body_.size() - at_ > kPadding) {
+    if (body_.size() - at_ > (ros1_ ? 0 : kPadding)) {
       throw CdrError("has " + std::to_string(body_.size() - at_) +
                      " bytes after its last field, expected the fields of " +
                      layout_->groups[0].type + " alone");
@@ -78,7 +86,7 @@ class Decoder {
 
   void align(std::size_t size, const std::string& name) {
     const std::size_t over = at_ % size;
-    if (over == 0) return;
+    if (over == 0 || ros1_) return;
     need(size - over, name);
     at_ += size - over;
   }
@@ -102,7 +110,7 @@ class Decoder {
   void group(const Ros2Group& one, std::string_view name, bool kept) {
     need(one.least, one.type);
     const std::size_t opened = kept ? tree_->open_group(name) : 0;
-    if (one.fields.empty()) ++at_;
+    if (one.fields.empty() && !ros1_) ++at_;
     for (const Ros2Field& field : one.fields) {
       if (field.list == Ros2List::none) {
         value(field, field.name, kept);
@@ -165,7 +173,7 @@ class Decoder {
     const std::uint32_t bytes = length(field.name);
     need(bytes, field.name);
     std::string_view found = body_.substr(at_, bytes);
-    if (found.ends_with('\0')) found.remove_suffix(1);
+    if (found.ends_with('\0') && !ros1_) found.remove_suffix(1);
     check_longest(field, found.size());
     if (kept) tree_->add_text(name, found);
     at_ += bytes;
@@ -225,10 +233,13 @@ class Decoder {
       const bool group = field.type == Ros2Type::group;
       const std::uint64_t least =
           group ? layout_->groups[field.group].least : sizeof(std::uint32_t);
-      // Fixed sizes multiply to at most what the layout was limited to.
-      if (count > (body_.size() - at_) / least) need(body_.size() - at_ + 1, field.name);
-      for (std::uint64_t k = 0; k < count; ++k) {
-        value(field, {}, kept && tree_->size() < kMostMessageFields);
+      const auto keeps = [&] { return kept && tree_->size() < kMostMessageFields; };
+      if (least == 0) {  // elements without a byte: as many as are kept, whatever their number
+        for (std::uint64_t k = 0; k < count && keeps(); ++k) value(field, {}, true);
+      } else {
+        // Fixed sizes multiply to at most what the layout was limited to.
+        if (count > (body_.size() - at_) / least) need(body_.size() - at_ + 1, field.name);
+        for (std::uint64_t k = 0; k < count; ++k) value(field, {}, keeps());
       }
     }
     if (kept) tree_->close(opened);
@@ -247,7 +258,8 @@ class Decoder {
 
   std::string_view body_;
   bool swap_;
-  std::size_t wide_;  // bytes of a wide character
+  std::size_t wide_;
+  bool ros1_;
   const Ros2Layout* layout_;
   std::size_t elements_;
   FieldTree* tree_;
@@ -284,13 +296,13 @@ void decode_cdr(std::string_view message, const Ros2Layout& layout, std::size_t 
   const std::string_view body = message.substr(kEncapsulation);
   const auto decode = [&](std::size_t wide) {
     tree.clear();
-    Decoder(body, big, wide, layout, elements, tree).decode();
+    Decoder(body, {big, wide, false}, layout, elements, tree).decode();
   };
   if (!layout.wide) return decode(2);
   FieldTree other;
   bool four = true;
   try {
-    Decoder(body, big, 4, layout, elements, other).decode();
+    Decoder(body, {big, 4, false}, layout, elements, other).decode();
   } catch (const CdrError&) {
     four = false;
   }
@@ -303,6 +315,12 @@ void decode_cdr(std::string_view message, const Ros2Layout& layout, std::size_t 
   if (four && !same(tree.root(), other.root())) {
     throw CdrError("has wide texts whose characters may have 2 bytes or 4");
   }
+}
+
+void decode_ros1(std::string_view message, const Ros2Layout& layout, std::size_t elements,
+                 FieldTree& tree) {
+  tree.clear();
+  Decoder(message, {false, 2, true}, layout, elements, tree).decode();
 }
 
 }  // namespace trussmap

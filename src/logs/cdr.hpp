@@ -19,7 +19,11 @@
 // Of lists of plain numbers the first are kept, the others cost nothing: images and clouds of
 // points. What has a length is checked against the bytes that are there before anything is made.
 //
-// Source: DDS-XTypes 1.3, 7.4; DDSI-RTPS 2.5, 10.
+// Messages of ROS 1 are the same without the first 4 bytes, little-endian, and without gaps:
+// numbers stand where they come, strings have no zero at their end, a message without fields no
+// byte.
+//
+// Source: DDS-XTypes 1.3, 7.4; DDSI-RTPS 2.5, 10; ROS wiki, "msg" and "Technical Overview".
 #pragma once
 
 #include "logs/field_tree.hpp"
@@ -45,5 +49,10 @@ inline constexpr std::size_t kMostMessageFields = std::size_t{1} << 19U;
 /// add).
 void decode_cdr(std::string_view message, const Ros2Layout& layout, std::size_t elements,
                 FieldTree& tree);
+
+/// The same of a message of ROS 1, with a layout of parse_ros1_definition. Throws CdrError where
+/// the message does not end where its fields do.
+void decode_ros1(std::string_view message, const Ros2Layout& layout, std::size_t elements,
+                 FieldTree& tree);
 
 }  // namespace trussmap

@@ -10,6 +10,7 @@
 #include "trussmap/error.hpp"
 
 #include <algorithm>
+#include <bzlib.h>
 #include <cerrno>
 #include <fstream>
 #include <lz4frame.h>
@@ -34,6 +35,47 @@ struct Progress {
   std::size_t read = 0;
   std::size_t written = 0;
   bool at_end = false;  // of a frame
+};
+
+/// Streams of bzip2, one after the other.
+class Bzip2Stream {
+ public:
+  Bzip2Stream() = default;
+  ~Bzip2Stream() { end(); }
+  Bzip2Stream(const Bzip2Stream&) = delete;
+  Bzip2Stream& operator=(const Bzip2Stream&) = delete;
+
+  Progress step(std::string_view from, char* to, std::size_t room) {
+    if (!open_ && BZ2_bzDecompressInit(&stream_, 0, 0) != BZ_OK) throw std::bad_alloc();
+    open_ = true;
+    const auto least = [](std::size_t count) {
+      return static_cast<unsigned>(std::min<std::size_t>(count, std::size_t{1} << 30U));
+    };
+    const unsigned given = least(from.size());
+    const unsigned space = least(room);
+    stream_.next_in = const_cast<char*>(from.data());  // read alone
+    stream_.avail_in = given;
+    stream_.next_out = to;
+    stream_.avail_out = space;
+    const int status = BZ2_bzDecompress(&stream_);
+    if (status == BZ_MEM_ERROR) throw std::bad_alloc();
+    if (status != BZ_OK && status != BZ_STREAM_END) {
+      throw DecompressError("its bzip2 data are damaged");
+    }
+    const Progress made{given - stream_.avail_in, space - stream_.avail_out,
+                        status == BZ_STREAM_END};
+    if (made.at_end) end();
+    return made;
+  }
+
+ private:
+  void end() {
+    if (open_) BZ2_bzDecompressEnd(&stream_);
+    open_ = false;
+  }
+
+  bz_stream stream_{};
+  bool open_ = false;
 };
 
 }  // namespace
@@ -84,6 +126,12 @@ std::string_view Decompressor::grown(std::string_view bytes, std::uint64_t most,
   return std::string_view(buffer_).substr(0, written);
 }
 
+std::string_view Decompressor::exactly(std::string_view made, std::uint64_t size) {
+  if (made.size() == size) return made;
+  throw DecompressError("its data have " + std::to_string(made.size()) +
+                        " bytes once decompressed, expected " + std::to_string(size));
+}
+
 std::string_view Decompressor::lz4(std::string_view bytes, std::uint64_t size) {
   if (contexts_->lz4 == nullptr &&
       LZ4F_isError(LZ4F_createDecompressionContext(&contexts_->lz4, LZ4F_VERSION)) != 0) {
@@ -102,9 +150,7 @@ std::string_view Decompressor::lz4(std::string_view bytes, std::uint64_t size) {
         progress.at_end = left == 0;
         return progress;
       });
-  if (made.size() == size) return made;
-  throw DecompressError("its data have " + std::to_string(made.size()) +
-                        " bytes once decompressed, expected " + std::to_string(size));
+  return exactly(made, size);
 }
 
 std::string_view Decompressor::zstd_of_any_size(std::string_view bytes, std::uint64_t most) {
@@ -124,10 +170,16 @@ std::string_view Decompressor::zstd_of_any_size(std::string_view bytes, std::uin
 }
 
 std::string_view Decompressor::zstd(std::string_view bytes, std::uint64_t size) {
-  const std::string_view made = zstd_of_any_size(bytes, size);
-  if (made.size() == size) return made;
-  throw DecompressError("its data have " + std::to_string(made.size()) +
-                        " bytes once decompressed, expected " + std::to_string(size));
+  return exactly(zstd_of_any_size(bytes, size), size);
+}
+
+std::string_view Decompressor::bzip2(std::string_view bytes, std::uint64_t size) {
+  Bzip2Stream stream;
+  return exactly(grown(bytes, size,
+                       [&stream](std::string_view from, char* to, std::size_t room) {
+                         return stream.step(from, to, room);
+                       }),
+                 size);
 }
 
 bool is_zstd(std::string_view bytes) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// What lz4 (frames) and zstd have compressed, in as much memory as it truly needs: what a file says
-// of sizes is believed once the bytes are there.
+// What lz4 (frames), zstd and bzip2 have compressed, in as much memory as it truly needs: what a
+// file says of sizes is believed once the bytes are there.
 #pragma once
 
 #include <cstdint>
@@ -31,12 +31,14 @@ class Decompressor {
   /// Exactly `size` bytes, or at most so many; valid until the next call. Throws DecompressError.
   [[nodiscard]] std::string_view lz4(std::string_view bytes, std::uint64_t size);
   [[nodiscard]] std::string_view zstd(std::string_view bytes, std::uint64_t size);
+  [[nodiscard]] std::string_view bzip2(std::string_view bytes, std::uint64_t size);
   [[nodiscard]] std::string_view zstd_of_any_size(std::string_view bytes, std::uint64_t most);
 
  private:
   struct Contexts;
   template <typename Step>
   std::string_view grown(std::string_view bytes, std::uint64_t most, const Step& step);
+  [[nodiscard]] static std::string_view exactly(std::string_view made, std::uint64_t size);
 
   std::unique_ptr<Contexts> contexts_;
   std::string buffer_;  // as large as it ever was

@@ -101,13 +101,33 @@ void feed_signal(Gathering& g, const SignalMap& signal, Signal& into) {
   });
 }
 
+/// Of a message that has both, as nav_msgs/Odometry.
+void compare_twist(Gathering& g, const FedMessage& fed) {
+  if (!fed.message.member("pose") || !fed.message.member("twist")) return;
+  const auto twist = twist_of(fed.message);
+  const auto pose = pose_of(fed.message);
+  if (twist && pose && pose->turned) g.to.beside.add(fed.t, *twist, *pose);
+}
+
 void feed_twist(Gathering& g) {
   const OdometryMap& odometry = g.map.odometry;
   g.feeds.add({odometry.twist, odometry.file, odometry.line}, [&g](const FedMessage& fed) {
     const auto twist = twist_of(fed.field);
     if (twist) g.to.twists.push_back({fed.t + nanoseconds(g.map.odometry.clock), *twist});
+    compare_twist(g, fed);
     return twist.has_value();
   });
+}
+
+/// The velocity of a body whose wheels all steer, by theirs.
+void feed_modules(Gathering& g) {
+  const OdometryMap& odometry = g.map.odometry;
+  g.feeds.add({odometry.modules, odometry.file, odometry.line},
+              [&g, &odometry](const FedMessage& fed) {
+                const auto twist = twist_of_modules(fed.field, odometry.places);
+                if (twist) g.to.twists.push_back({fed.t + nanoseconds(odometry.clock), *twist});
+                return twist.has_value();
+              });
 }
 
 /// Velocities by their fields.
@@ -153,6 +173,7 @@ void feed_pose(Gathering& g, const AskedField& asked, double clock,
     }
     if (const auto twist = odometry ? twist_of(fed.message) : std::nullopt) {
       g.to.twists_move = g.to.twists_move || twist->ahead != 0.0 || twist->turn != 0.0;
+      compare_twist(g, fed);
     }
     into.push_back(
         {fed.t + nanoseconds(clock), pose->position.x(), pose->position.y(), pose->yaw()});
@@ -218,6 +239,8 @@ void feed_all(Gathering& g) {
   const OdometryMap& odometry = g.map.odometry;
   if (!odometry.twist.empty()) {
     feed_twist(g);
+  } else if (!odometry.modules.empty()) {
+    feed_modules(g);
   } else if (!odometry.speed.empty()) {
     feed_speeds(g);
   } else if (odometry.line > 0) {

@@ -11,6 +11,7 @@
 #include "logs/message_log.hpp"
 #include "logs/pose_fields.hpp"
 #include "logs/signal.hpp"
+#include "logs/source_agreement.hpp"
 
 #include <cstdint>
 #include <string>
@@ -72,6 +73,7 @@ struct GatheredLog {
   std::size_t refused = 0;      ///< fields that are not what was expected: texts for numbers
   std::string first_refused;    ///< where the first of these is
   bool twists_move = false;     ///< of an odometry whose poses were asked for
+  TwistBesidePose beside;       ///< of an odometry whose messages have both
   std::size_t negative_ranges = 0;
   std::size_t lost_fixes = 0;  ///< of a receiver that had no fix
   std::size_t unnamed = 0;     ///< sightings without a landmark's name

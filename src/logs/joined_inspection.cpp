@@ -51,8 +51,8 @@ void read_times(const JoinedLogs& log, const LogMap& map, InspectedLog& into) {
 }
 
 /// Times and motion of a log, by what a map for it alone would be.
-void read_alone(const fs::path& path, InspectedLog& found) {
-  const JoinedLogs alone({path});
+void read_alone(const JoinedLogs& alone, InspectedLog& found) {
+  const fs::path& path = alone.path(0);
   found.first = found.last = kAbsent;
   try {
     LogClockFacts clock;
@@ -70,11 +70,12 @@ InspectedLog inspected(const JoinedLogs& logs, std::size_t number) {
   InspectedLog found;
   found.path = path;
   found.name = logs.name(number);
-  found.survey = survey_log(path);
+  const JoinedLogs alone({path}, logs.definitions());
+  found.survey = survey_log(path, logs.definitions());
   put_in_order(found.survey, path);
   found.survey.wheels = wheel_topics(found.survey);
-  found.survey.wheels.constants = wheel_constants(path, found.survey.wheels);
-  read_alone(path, found);
+  found.survey.wheels.constants = wheel_constants(alone, found.survey.wheels);
+  read_alone(alone, found);
   return found;
 }
 
@@ -94,7 +95,7 @@ void find_time_unit(const InspectedLog& reference, InspectedLog& log) {
     InspectedLog other;
     other.survey = log.survey;
     other.survey.time_unit = unit;
-    read_alone(log.path, other);
+    read_alone(JoinedLogs({log.path}), other);
     const bool same = other.first == log.first && other.last == log.last;
     if (same || !lies_within(other) || other.last - other.first <= span) continue;
     log.survey.time_unit = unit;
@@ -223,9 +224,9 @@ std::vector<LogClockFacts> clocks_of(const std::vector<InspectedLog>& logs) {
 
 }  // namespace
 
-LogInspection inspect_logs(const std::vector<fs::path>& paths) {
-  const JoinedLogs logs(paths);
-  if (logs.size() == 1) return inspect_log(logs.path(0));
+LogInspection inspect_logs(const std::vector<fs::path>& paths, const LogOptions& options) {
+  const JoinedLogs logs(paths, given_definitions(options));
+  if (logs.size() == 1) return inspect_one_log(logs.path(0), logs.definitions());
   std::vector<InspectedLog> each;
   std::string landmarks;
   LogInspection result;
@@ -250,6 +251,9 @@ LogInspection inspect_logs(const std::vector<fs::path>& paths) {
     if (!one.survey.cut_off.empty()) {
       result.cut_off +=
           (result.cut_off.empty() ? "" : "; ") + one.survey.cut_off + " (" + one.name + ")";
+    }
+    for (const LogCount& some : one.survey.passed_over) {
+      result.passed_over.push_back({some.number, some.what + " (" + one.name + ")"});
     }
     surveys.push_back(std::move(one.survey));
   }

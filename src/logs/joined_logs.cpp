@@ -49,7 +49,21 @@ void add_folder(const fs::path& folder, std::vector<fs::path>& logs) {
 
 }  // namespace
 
-JoinedLogs::JoinedLogs(const std::vector<fs::path>& paths) {
+GivenDefinitions given_definitions(const LogOptions& options) {
+  if (options.definitions.empty()) return nullptr;
+  return std::make_shared<const MessageDefinitions>(options.definitions);
+}
+
+std::vector<LogCount> counts_of(const std::vector<PassedOver>& passed_over) {
+  std::vector<LogCount> counts;
+  for (const PassedOver& one : passed_over) {
+    counts.push_back({static_cast<std::size_t>(one.number), one.what + ", passed over"});
+  }
+  return counts;
+}
+
+JoinedLogs::JoinedLogs(const std::vector<fs::path>& paths, GivenDefinitions definitions)
+    : definitions_(std::move(definitions)) {
   std::error_code ignored;
   for (const fs::path& one : paths) {
     if (fs::is_directory(one, ignored) && !is_message_log(one)) {
@@ -114,6 +128,7 @@ LogEnd JoinedLogs::read(const LogVisit& visit,
     std::map<std::size_t, LogTopic> topics;
     LogVisit one;
     one.elements = visit.elements;
+    one.definitions = definitions_.get();
     if (visit.wanted) {
       one.wanted = [&](const LogTopic& topic) { return visit.wanted(own(topic)); };
     }
@@ -130,8 +145,11 @@ LogEnd JoinedLogs::read(const LogVisit& visit,
     LogEnd end = read_message_log(logs_[k], one);
     require_messages(logs_[k], end);
     for (LogTopic& topic : end.topics) all.topics.push_back(own(std::move(topic)));
-    if (end.cut_off.empty()) continue;
     const std::string where = logs_.size() > 1 ? " (" + names_[k] + ")" : "";
+    for (const PassedOver& one_kind : end.passed_over) {
+      all.passed_over.push_back({one_kind.number, one_kind.what + where});
+    }
+    if (end.cut_off.empty()) continue;
     all.cut_off += (all.cut_off.empty() ? "" : "; ") + end.cut_off + where;
   }
   return all;

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "logs/message_log.hpp"
+#include "trussmap/log_files.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -18,14 +19,21 @@
 
 namespace trussmap {
 
+/// Throws InputError.
+[[nodiscard]] GivenDefinitions given_definitions(const LogOptions& options);
+
+[[nodiscard]] std::vector<LogCount> counts_of(const std::vector<PassedOver>& passed_over);
+
 class JoinedLogs {
  public:
   /// Throws InputError: none, one that is no log, one given twice, a folder without logs.
-  explicit JoinedLogs(const std::vector<std::filesystem::path>& paths);
+  explicit JoinedLogs(const std::vector<std::filesystem::path>& paths,
+                      GivenDefinitions definitions = nullptr);
 
   [[nodiscard]] std::size_t size() const { return logs_.size(); }
   [[nodiscard]] const std::filesystem::path& path(std::size_t log) const { return logs_[log]; }
   [[nodiscard]] const std::string& name(std::size_t log) const { return names_[log]; }
+  [[nodiscard]] const GivenDefinitions& definitions() const { return definitions_; }
   [[nodiscard]] bool is_table(std::size_t log) const { return tables_[log]; }
   /// All their names, for messages; of a single one its path.
   [[nodiscard]] std::string all_names() const;
@@ -41,6 +49,7 @@ class JoinedLogs {
   std::vector<std::filesystem::path> logs_;
   std::vector<std::string> names_;
   std::vector<bool> tables_;
+  GivenDefinitions definitions_;
 };
 
 }  // namespace trussmap

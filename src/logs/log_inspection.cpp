@@ -51,8 +51,9 @@ std::vector<NamedField> fields_of(FieldRef message) {
 
 class Surveyor {
  public:
-  LogSurvey survey(const std::filesystem::path& log) {
+  LogSurvey survey(const std::filesystem::path& log, const GivenDefinitions& definitions) {
     LogVisit visit;
+    visit.definitions = definitions.get();
     visit.elements = kJoints;
     visit.wanted = [](const LogTopic&) { return true; };
     visit.message = [this](const LogMessage& message) { take(message); };
@@ -78,6 +79,7 @@ class Surveyor {
       result.frames.push_back(facts);
     }
     result.cut_off = end.cut_off;
+    result.passed_over = counts_of(end.passed_over);
     return result;
   }
 
@@ -201,21 +203,31 @@ double LogSurvey::upright_share(const FrameFacts& frame, const std::string& base
   return std::sqrt((up * frame.z_axes * up.transpose()).value() / samples);
 }
 
-LogSurvey survey_log(const std::filesystem::path& log) {
-  return Surveyor().survey(log);
+LogSurvey survey_log(const std::filesystem::path& log, const GivenDefinitions& definitions) {
+  return Surveyor().survey(log, definitions);
 }
 
-LogInspection inspect_log(const std::filesystem::path& log) {
-  LogSurvey survey = survey_log(log);
+LogInspection inspect_log(const std::filesystem::path& log, const LogOptions& options) {
+  return inspect_one_log(log, given_definitions(options));
+}
+
+LogInspection inspect_one_log(const std::filesystem::path& log,
+                              const GivenDefinitions& definitions) {
+  LogSurvey survey = survey_log(log, definitions);
   put_in_order(survey, log);
   survey.wheels = wheel_topics(survey);
-  survey.wheels.constants = wheel_constants(log, survey.wheels);
+  survey.wheels.constants = wheel_constants(JoinedLogs({log}, definitions), survey.wheels);
   std::string map = guessed_map(survey, log.string());
   std::vector<LogFrameFacts> frames;
   for (const FrameFacts& one : survey.frames) {
     frames.push_back({one.parent, one.child, one.is_static, one.samples});
   }
-  return {std::move(survey.topics), std::move(frames), std::move(survey.cut_off), std::move(map)};
+  return {std::move(survey.topics),
+          std::move(frames),
+          std::move(survey.cut_off),
+          std::move(map),
+          {},
+          std::move(survey.passed_over)};
 }
 
 }  // namespace trussmap

@@ -253,10 +253,11 @@ bool is_steering_column(const Robot& robot, const std::string& column) {
 
 LogMap read_log_map(const fs::path& file) {
   LogMap map = parse_log_map(read_file(file), file);
-  if (map.wheels.empty() == (map.odometry.line == 0)) {
-    throw InputError(file.string(), 0,
+  const bool drives = map.odometry.line != 0 && !map.odometry.compare;
+  if (map.wheels.empty() != drives) {
+    throw InputError(file.string(), map.odometry.line,
                      "needs either [odometry] or [wheels.left] and [wheels.right], "
-                     "expected one of them");
+                     "expected one of them (or both, the first with compare = true)");
   }
   return map;
 }

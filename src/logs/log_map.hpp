@@ -17,6 +17,7 @@
 #pragma once
 
 #include "trussmap/model.hpp"
+#include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
 
 #include <filesystem>
@@ -76,13 +77,16 @@ struct PoseFields {
 /// Where the wheels' travels come from, if not from fields of their own.
 struct OdometryMap {
   std::string file;
-  std::string twist;  ///< path to velocities ahead and round
-  std::string pose;   ///< path to poses that are the wheels' sum, or /tf:parent.child
-  PoseFields fields;  ///< or such poses by their fields
+  std::string twist;            ///< path to velocities ahead and round
+  std::string pose;             ///< path to poses that are the wheels' sum, or /tf:parent.child
+  PoseFields fields;            ///< or such poses by their fields
+  std::string modules;          ///< or path to a list of speeds and angles of wheels that steer
+  std::vector<Vector2> places;  ///< m, of these: x ahead, y to the left
   std::string speed, turn_rate, sideways;  ///< or velocities by theirs; the last may be empty
   double speed_unit = 1.0;                 ///< m/s
   double turn_rate_unit = 1.0;             ///< rad/s, with the sign
   double clock = 0.0;
+  bool compare = false;  ///< beside [wheels]: it drives nothing, but is compared with them
   std::size_t line = 0;
 };
 

@@ -34,7 +34,8 @@ void add_wheel_motion(const LogMap& map, GatheredLog& log, std::vector<LoggedMot
     turn.x.push_back(turn.x.back() + rows.right[k] - rows.left[k]);
     way.x.push_back(way.x.back() + 0.5 * std::abs(rows.right[k] + rows.left[k]));
   }
-  const bool held = !map.odometry.twist.empty() || !map.odometry.speed.empty();
+  const bool held =
+      !map.odometry.twist.empty() || !map.odometry.speed.empty() || !map.odometry.modules.empty();
   turn.held = way.held = held;
   found.push_back(std::move(turn));
   found.push_back(std::move(way));

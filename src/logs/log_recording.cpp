@@ -1,14 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "drive/body_motion.hpp"
 #include "logs/byte_reader.hpp"
 #include "logs/calendar.hpp"
 #include "logs/gathered_log.hpp"
 #include "logs/seen_landmarks.hpp"
 #include "logs/sensor_frames.hpp"
+#include "logs/source_agreement.hpp"
 #include "logs/tangent_plane.hpp"
+#include "logs/untied_drive.hpp"
 #include "logs/wheel_rows.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/log_files.hpp"
+#include "trussmap/robot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -180,6 +184,57 @@ void warn_of_turns(const Drive& drive, double wheelbase, LogRecording& result) {
   }
 }
 
+/// The wheels, whatever they are, beside an odometry that the map has as well.
+void compare_wheels(const LogMap& map, const GatheredLog& gathered,
+                    const std::vector<std::int64_t>& bounds, const Drive& drive,
+                    LogRecording& result) {
+  const OdometryRows odometry = odometry_rows(map, gathered, bounds);
+  if (odometry.left.empty()) return;
+  Recording alone;
+  alone.drive = drive;
+  MotionRows wheels;
+  try {
+    wheels = with_wheels(std::move(alone), map.model.robot).drive;
+  } catch (const InputError&) {  // a reading that no wheel can have, which check names
+    return;
+  }
+  const Robot& robot = map.model.robot;
+  const auto first = std::find(bounds.begin(), bounds.end(), odometry.bounds.front());
+  const auto before = static_cast<std::size_t>(first - bounds.begin());
+  constexpr std::int64_t kWindow = kNanosecondsPerSecond;
+  MotionAgreement agreement;
+  PlanarStep a;
+  PlanarStep b;
+  std::int64_t begin = odometry.bounds.front();
+  for (std::size_t k = 0; k < odometry.left.size(); ++k) {
+    const BodyMotion by_wheels = body_motion(wheels, before + k, robot);
+    const BodyMotion said = body_motion({odometry.left[k], odometry.right[k]}, robot, 0.0);
+    a += {by_wheels.forward, 0.0, by_wheels.turn};
+    b += {said.forward, 0.0, said.turn};
+    if (odometry.bounds[k + 1] - begin < kWindow) continue;
+    agreement.add_window(a, b);
+    a = b = {};
+    begin = odometry.bounds[k + 1];
+  }
+  for (std::string& one :
+       agreement.contradictions("what the wheels say",
+                                "the odometry (line " + std::to_string(map.odometry.line) + ")")) {
+    result.warnings.push_back(std::move(one));
+  }
+}
+
+/// What an odometry says twice, and what it and wheels say.
+void warn_of_odometry(const LogMap& map, const GatheredLog& gathered,
+                      const std::vector<std::int64_t>& bounds, const Drive& drive,
+                      LogRecording& result) {
+  if (map.odometry.line == 0) return;
+  const std::string& path = map.odometry.twist.empty() ? map.odometry.pose : map.odometry.twist;
+  for (std::string& one : gathered.beside.contradictions(path)) {
+    result.warnings.push_back(std::move(one));
+  }
+  if (!map.wheels.empty()) compare_wheels(map, gathered, bounds, drive, result);
+}
+
 void warn_of_far_fixes(const Recording& recording, LogRecording& result) {
   constexpr double kFar = 1e5;  // m
   for (const Fix& one : recording.fixes) {
@@ -277,11 +332,13 @@ void count_left_out(const WheelRows& rows, const GatheredLog& gathered, const Si
   count(outside_fixes, "fixes before or after the drive left out", result);
   count(gathered.lost_fixes, "fixes that the receiver itself calls none left out", result);
   count(gathered.wrong_poses, "poses without a valid rotation left out", result);
+  for (LogCount& one : counts_of(gathered.end.passed_over)) result.counts.push_back(std::move(one));
 }
 
-LogRecording recording_of(const std::vector<fs::path>& paths, const fs::path& map_file) {
+LogRecording recording_of(const std::vector<fs::path>& paths, const fs::path& map_file,
+                          const LogOptions& options) {
   const LogMap map = read_log_map(map_file);
-  const JoinedLogs logs(paths);
+  const JoinedLogs logs(paths, given_definitions(options));
   GatheredLog gathered = gather(logs, map);
   LogRecording result;
   result.model = map.model;
@@ -318,23 +375,26 @@ LogRecording recording_of(const std::vector<fs::path>& paths, const fs::path& ma
   warn_of_clock(map, gathered, result);
   warn_of_far_fixes(recording, result);
   warn_of_turns(drive, map.model.robot.wheelbase, result);
+  warn_of_odometry(map, gathered, rows.bounds, drive, result);
   if (recording.sightings.empty() && recording.fixes.empty() && recording.truth.empty()) {
-    throw InputError(map_file.string(), 0,
-                     "ties the drive to no place: no sighting, fix or truth is within it, expected "
-                     "[[sightings]], [fixes] or [truth]");
+    for (std::string& one : untied_warnings(drive, map.model.robot)) {
+      result.warnings.push_back(std::move(one));
+    }
   }
   return result;
 }
 
 }  // namespace
 
-LogRecording read_log_recording(const fs::path& log, const fs::path& map_file) {
-  return read_log_recording(std::vector<fs::path>{log}, map_file);
+LogRecording read_log_recording(const fs::path& log, const fs::path& map_file,
+                                const LogOptions& options) {
+  return read_log_recording(std::vector<fs::path>{log}, map_file, options);
 }
 
-LogRecording read_log_recording(const std::vector<fs::path>& logs, const fs::path& map_file) {
+LogRecording read_log_recording(const std::vector<fs::path>& logs, const fs::path& map_file,
+                                const LogOptions& options) {
   try {
-    return recording_of(logs, map_file);
+    return recording_of(logs, map_file, options);
   } catch (const InputError& error) {
     // Names of fields and frames are anybody's, line ends and all.
     const std::string text = error.what();

@@ -36,13 +36,19 @@ struct LogSurvey {
   bool table = false;
   std::string time_unit = {};  ///< of a table's times, where logs beside it tell; empty: a guess
   std::string cut_off;
+  std::vector<LogCount> passed_over = {};
 
   /// How much of the frame's z axis stands up in `base`, 0 to 1 (root mean square), if the frames
   /// between them are turned as at the end.
   [[nodiscard]] double upright_share(const FrameFacts& frame, const std::string& base) const;
 };
 
-[[nodiscard]] LogSurvey survey_log(const std::filesystem::path& log);
+[[nodiscard]] LogSurvey survey_log(const std::filesystem::path& log,
+                                   const GivenDefinitions& definitions);
+
+/// Throws InputError where the log is damaged.
+[[nodiscard]] LogInspection inspect_one_log(const std::filesystem::path& log,
+                                            const GivenDefinitions& definitions);
 
 /// Of a table whose rows are not in order of time, or stand twice: its fields as in that order.
 void put_in_order(LogSurvey& survey, const std::filesystem::path& table);

@@ -17,7 +17,8 @@ void add_fields(const LogSurvey& survey, const std::string& file, std::vector<Na
     for (const LogFieldFacts& one : topic.fields) {
       std::string path = one.path;
       if (!topic.name.empty()) path = one.path.empty() ? topic.name : topic.name + '/' + one.path;
-      fields.push_back({std::move(path), &one, topic.step, topic.name, file, survey.time_unit});
+      fields.push_back(
+          {std::move(path), &one, topic.step, topic.name, file, survey.time_unit, topic.type});
     }
   }
 }

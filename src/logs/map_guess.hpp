@@ -20,6 +20,7 @@ struct NamedFacts {
   std::string topic = {};      ///< empty of a table
   std::string file = {};       ///< where several logs are read as one
   std::string time_unit = {};  ///< that its file's times are in, where the others tell
+  std::string type = {};       ///< of its topic
 };
 
 /// What was found, for the comment at the top.

@@ -118,21 +118,29 @@ std::optional<int> guess_wheels(FreeFields& fields, MapText& text) {
   static const FreeFields::Words kTravel{"enc", "tick",   "count", "dist",
                                          "pos", "travel", "odo",   "wheel"};
   static const FreeFields::Words kSpeed{"vel", "speed", "rate"};
-  static const FreeFields::Words kNot{"power",    "current", "volt",    "target",
-                                      "goal",     "range",   "tag",     "temp",
-                                      "setpoint", "command", "applied", "output"};
+  static const FreeFields::Words kNot{"power",   "current", "volt",  "target",   "goal",
+                                      "range",   "tag",     "temp",  "setpoint", "command",
+                                      "applied", "output",  "steer", "azimuth"};
   FreeFields::Words slow = kNot;
   slow.insert(slow.end(), kSpeed.begin(), kSpeed.end());
   std::optional<WheelFields> found = wheel_fields(fields, kTravel, slow);
   if (!found) found = wheel_fields(fields, {""}, slow);
   if (!found) found = wheel_fields(fields, kSpeed, kNot);
+  const bool named = found.has_value();
+  if (!named) {
+    if (const auto pair = unnamed_wheels(fields)) found = WheelFields{pair->first, pair->second};
+  }
   if (!found) return std::nullopt;
   fields.mark_taken(*found->left);
   fields.mark_taken(*found->right);
   text.blank();
   text.table("robot");
   text.number("wheelbase", Robot().wheelbase, std::string("m between the wheels; ") + kState);
-  const int to_state = 1 + guess_wheel_constants(*found->left, text);
+  int to_state = 1 + guess_wheel_constants(*found->left, text);
+  if (!named) {
+    text.comment("STATE IT: the table has no header; two columns that grow alike, left or right?");
+    ++to_state;
+  }
   guess_wheel("left", *found->left, text);
   guess_wheel("right", *found->right, text);
   return to_state;

@@ -129,7 +129,10 @@ Guessed guess_by_names(const std::vector<NamedFacts>& all, bool table,
   // What is called a truth first, lest its poses be taken for an odometry's.
   MapText truths;
   const bool truth = guess_truth(fields, truths);
-  std::optional<int> wheels = guess_wheels(fields, text);
+  std::optional<int> wheels = guess_body_speeds(fields, true, text);
+  if (!wheels) wheels = guess_wheels(fields, text);
+  if (!wheels) wheels = guess_body_speeds(fields, false, text);
+  pass_over_body_speeds(fields);
   MapText marks;
   const bool sightings = guess_sightings(fields, marks);
   MapText places;
@@ -147,6 +150,7 @@ Guessed guess_by_names(const std::vector<NamedFacts>& all, bool table,
   text.append(truths);
   found.places = sightings || fixes || truth;
   guess_covariates(fields, text);
+  list_unnamed(fields, text);
   return found;
 }
 

@@ -79,6 +79,7 @@ std::optional<int> wheels_by_type(const LogSurvey& survey, MapText& text) {
     text.comment("In place of [wheels], as the robot's own odometry has it:");
     text.comment("[odometry]");
     text.comment("twist = " + toml_string(topics.odometry));
+    text.comment("compare = true   # beside [wheels]: says where the two contradict each other");
     return to_state;
   }
   if (topics.odometry.empty()) return std::nullopt;

@@ -34,7 +34,7 @@ void McapChannels::take_schema(std::string_view content, ByteReader& reader) {
   schema.name = mcap_text(reader);
   schema.encoding = mcap_text(reader);
   const std::string_view definition = mcap_text(reader);
-  if (schema.encoding == "ros2msg") {
+  if (schema.encoding == "ros2msg" || schema.encoding == "ros1msg") {
     schema.kept = definition.size() <= kLargestDefinition;
     if (schema.kept) schema.definition = definition;
   }

@@ -34,7 +34,7 @@ class McapChannels {
   struct Schema {
     std::string name;
     std::string encoding;
-    std::string definition;  ///< of ros2msg alone
+    std::string definition;  ///< of ros2msg and ros1msg alone
     bool kept = true;        ///< false: the definition is too large
     std::uint32_t crc = 0;   ///< of the record
   };

@@ -41,15 +41,20 @@ LogEnd read_message_log(const fs::path& path, const LogVisit& visit) {
   }
   throw InputError(path.string(), 0,
                    "is no log that can be read, expected an MCAP file, a rosbag2 (.db3 or its "
-                   "folder), a .wpilog, a Road Runner .log or a table (.csv, .tsv, .txt)");
+                   "folder), a bag of ROS 1 (.bag), a .wpilog, a Road Runner .log or a table "
+                   "(.csv, .tsv, .txt)");
 }
 
 void require_messages(const fs::path& path, const LogEnd& end) {
   const bool any = std::any_of(end.topics.begin(), end.topics.end(),
                                [](const LogTopic& topic) { return topic.messages > 0; });
   if (any) return;
+  std::string beside;
+  for (const PassedOver& one : end.passed_over) {
+    beside += ", but " + std::to_string(one.number) + " " + one.what;
+  }
   throw InputError(path.string(), 0,
-                   "holds no messages" +
+                   "holds no messages" + beside +
                        (end.cut_off.empty() ? "" : ": it is cut off " + end.cut_off) +
                        ", expected a log with some");
 }

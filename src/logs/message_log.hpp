@@ -17,6 +17,7 @@
 #pragma once
 
 #include "logs/field_tree.hpp"
+#include "logs/message_definitions.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -29,7 +30,7 @@ namespace trussmap {
 struct LogTopic {
   std::string name;      ///< empty of a table, which has but one
   std::string type;      ///< as the log has it: nav_msgs/msg/Odometry, double[], struct:Pose2d
-  std::string encoding;  ///< cdr, wpilog, road runner, csv
+  std::string encoding;  ///< cdr, ros1, wpilog, road runner, csv
   std::string unread;    ///< why its messages cannot be read ("protobuf"); empty: they can
   /// Fields are named by the columns of a table, which may have any characters in them.
   bool table = false;
@@ -55,11 +56,20 @@ struct LogVisit {
   std::function<void(const LogMessage&)> message;
   /// Of lists of plain numbers: how many elements are kept; of lists of groups and texts all.
   std::size_t elements = 4096;
+  /// Of types that a bag of ROS 2 does not define itself; nothing: none.
+  const MessageDefinitions* definitions = nullptr;
+};
+
+/// So many records of a kind that no topic has.
+struct PassedOver {
+  std::uint64_t number = 0;
+  std::string what;  ///< in the plural: "records of entries that were not started"
 };
 
 struct LogEnd {
   std::vector<LogTopic> topics;  ///< with all their messages counted
   std::string cut_off;           ///< "at byte 123: ends in the middle of a chunk"; empty: whole
+  std::vector<PassedOver> passed_over = {};
 };
 
 /// Bytes that one chunk, record or message may have once decompressed: a size in a file is an
@@ -72,7 +82,7 @@ inline constexpr std::uint64_t kLargestChunk = std::uint64_t{256} << 20U;
 [[nodiscard]] LogEnd read_mcap(const std::filesystem::path& file, const LogVisit& visit);
 
 /// A .db3 (plain, or .db3.zstd), or the folder of a bag with its metadata.yaml, of sqlite3 or mcap
-/// files.
+/// files; a bag of ROS 1 (.bag), or a folder of them.
 [[nodiscard]] bool is_rosbag2(const std::filesystem::path& path);
 [[nodiscard]] LogEnd read_rosbag2(const std::filesystem::path& path, const LogVisit& visit);
 

@@ -102,6 +102,16 @@ OdometryMap odometry_of(const toml::table& node, const std::string& file) {
   odometry.twist = table.text("twist");
   odometry.pose = table.text("pose");
   odometry.clock = table.clock();
+  odometry.compare = table.flag("compare", false);
+  odometry.modules = table.text("modules");
+  odometry.places = table.points("places");
+  constexpr std::size_t kFewestModules = 2;
+  if (odometry.modules.empty() != odometry.places.empty() ||
+      (!odometry.places.empty() && odometry.places.size() < kFewestModules)) {
+    table.fail(
+        "has modules without their places, or places without modules, expected both, of two "
+        "or more: places = [[0.3, 0.3], [0.3, -0.3], ...]");
+  }
   odometry.fields = pose_fields_of(table);
   odometry.speed = table.text("speed");
   odometry.turn_rate = table.text("turn_rate");
@@ -114,11 +124,12 @@ OdometryMap odometry_of(const toml::table& node, const std::string& file) {
     table.fail("has a part of the velocities, expected speed and turn_rate");
   }
   const int ways = (odometry.twist.empty() ? 0 : 1) + (odometry.pose.empty() ? 0 : 1) +
-                   (odometry.fields.empty() ? 0 : 1) + (odometry.speed.empty() ? 0 : 1);
+                   (odometry.fields.empty() ? 0 : 1) + (odometry.speed.empty() ? 0 : 1) +
+                   (odometry.modules.empty() ? 0 : 1);
   if (ways != 1) {
     table.fail(
         "needs either a twist or a pose, expected the path of one, or the fields of one: speed and "
-        "turn_rate, or x, y and heading");
+        "turn_rate, or x, y and heading (or modules)");
   }
   table.finish();
   return odometry;

@@ -67,10 +67,19 @@ void guess_log_time(const FreeFields& fields, MapText& text);
 /// How many figures are left to state; nothing where there are no wheels.
 std::optional<int> guess_wheels(FreeFields& fields, MapText& text);
 /// The same where there are none: poses that move, or speeds.
+/// FRC's ChassisSpeeds, or swerve modules; `holonomic_alone`: of robots that go sideways.
+std::optional<int> guess_body_speeds(const FreeFields& fields, bool holonomic_alone, MapText& text);
+/// What a robot makes of its wheels is no further sensor.
+void pass_over_body_speeds(FreeFields& fields);
 std::optional<int> guess_odometry(FreeFields& fields, MapText& text);
 /// Beside wheels: what sums them up, or estimates, is no sensor of its own.
 void pass_over_odometries(FreeFields& fields, MapText& text);
 void guess_headings(FreeFields& fields, MapText& text);
+/// Of tables without a header: left and right, if two columns look like wheels.
+[[nodiscard]] std::optional<std::pair<const NamedFacts*, const NamedFacts*>> unnamed_wheels(
+    const FreeFields& fields);
+/// What is left of their columns, as comments.
+void list_unnamed(const FreeFields& fields, MapText& text);
 /// Whether there are some.
 bool guess_sightings(FreeFields& fields, MapText& text);
 bool guess_fixes(FreeFields& fields, MapText& text);

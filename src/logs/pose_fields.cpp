@@ -101,6 +101,36 @@ std::optional<FieldTwist> twist_of(FieldRef field) {
   return FieldTwist{*x, number_at(field, "vy").value_or(0.0), *turn};
 }
 
+std::optional<FieldTwist> twist_of_modules(FieldRef list, const std::vector<Vector2>& places) {
+  const std::vector<FieldRef> modules = list.children();
+  if (list.kind() != FieldKind::list || modules.size() != places.size()) return std::nullopt;
+  // The mean wheel moves as the body does at the mean place; the rest is its turn.
+  Vector2 place = Vector2::Zero();
+  Vector2 velocity = Vector2::Zero();
+  std::vector<Vector2> velocities;
+  const double share = 1.0 / static_cast<double>(places.size());
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto speed = number_at(modules[k], "speed");
+    const std::optional<FieldRef> angle = modules[k].member("angle");
+    const auto direction = angle ? number_at(*angle, "value") : std::nullopt;
+    if (!speed || !direction) return std::nullopt;
+    velocities.emplace_back(*speed * std::cos(*direction), *speed * std::sin(*direction));
+    place += share * places[k];
+    velocity += share * velocities.back();
+  }
+  double moment = 0.0;
+  double inertia = 0.0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Vector2 arm = places[k] - place;
+    const Vector2 rest = velocities[k] - velocity;
+    moment += arm.x() * rest.y() - arm.y() * rest.x();
+    inertia += arm.squaredNorm();
+  }
+  if (!(inertia > 0.0)) return std::nullopt;
+  const double turn = moment / inertia;
+  return FieldTwist{velocity.x() + turn * place.y(), velocity.y() - turn * place.x(), turn};
+}
+
 std::optional<double> yaw_of_quaternion(FieldRef field) {
   if (field.kind() != FieldKind::group) return std::nullopt;
   const auto quaternion = quaternion_at(field);

@@ -12,10 +12,12 @@
 #pragma once
 
 #include "logs/field_tree.hpp"
+#include "trussmap/planar.hpp"
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -39,6 +41,11 @@ struct FieldTwist {
 
 [[nodiscard]] std::optional<FieldPose> pose_of(FieldRef field);
 [[nodiscard]] std::optional<FieldTwist> twist_of(FieldRef field);
+/// Of a body whose wheels stand at `places` (m; x ahead, y to the left) and all steer, by a list of
+/// their speeds and angles (WPILib's SwerveModuleState), by least squares; none where the list is
+/// none of as many.
+[[nodiscard]] std::optional<FieldTwist> twist_of_modules(FieldRef list,
+                                                         const std::vector<Vector2>& places);
 /// Of a group x, y, z, w, and of length 1; rad.
 [[nodiscard]] std::optional<double> yaw_of_quaternion(FieldRef field);
 /// The same of its four numbers.

@@ -16,7 +16,7 @@ bool has_topic(const Bag& bag, const std::string& name) {
                      [&](const Bag::Topic& one) { return one.name == name; });
 }
 
-bool any_read(const std::vector<double>& values) {
+bool any_in(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double one) { return !std::isnan(one); });
 }
 
@@ -28,13 +28,13 @@ void add_drive(MapText& map, const BagMapParts& parts, const MotionRows& drive, 
     map.text("unit", "rad");
     if (!one.steers) map.number("radius", radius);
   }
-  if (any_read(drive.heading)) {
+  if (any_in(drive.heading)) {
     map.blank();
     map.table("heading");
     map.text("field", "/imu/data/orientation");
     map.text("unit", "quaternion");
   }
-  if (any_read(drive.yaw_rate)) {
+  if (any_in(drive.yaw_rate)) {
     map.blank();
     map.table("yaw_rate");
     map.text("field", "/imu/data/angular_velocity.z");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "logs/ros2_definition.hpp"
 
+#include "logs/message_definitions.hpp"
 #include "logs/ros2_standard.hpp"
 
 #include <algorithm>
@@ -71,22 +72,34 @@ std::string_view next_line(std::string_view& text) {
   return without_spaces(line);
 }
 
+constexpr std::string_view kRos1Time = "builtin_interfaces/Time";
+constexpr std::string_view kRos1Duration = "builtin_interfaces/Duration";
+
+/// What is a plain type in ROS 1, as a group; nothing of other types.
+std::string_view time_of_ros1(std::string_view type) {
+  if (type == kRos1Time) return "uint32 sec\nuint32 nanosec";
+  return type == kRos1Duration ? "int32 sec\nint32 nanosec" : std::string_view();
+}
+
 /// The part of a definition that is of one type.
 struct Section {
   std::string_view text;
-  std::size_t line = 1;  // where it begins
-  bool standard = false;
+  std::size_t line = 1;      // where it begins
+  std::string_view of = {};  // whose lines they are; empty: nobody's whom a user could ask
 };
+
+constexpr std::string_view kOfBag = "its definition";
 
 class Parser {
  public:
-  Parser(std::string_view type, std::string_view text) {
+  Parser(std::string_view type, std::string_view text, bool ros1, const MessageDefinitions* given)
+      : ros1_(ros1), given_(given) {
     if (text.size() > kLongestText) {
       throw DefinitionError("its definition has more than " + std::to_string(kLongestText) +
                             " bytes");
     }
     const auto blank = [](char c) { return is_space(c) || c == '\n'; };
-    if (!std::all_of(text.begin(), text.end(), blank)) split(ros2_type_name(type), text);
+    if (ros1 || !std::all_of(text.begin(), text.end(), blank)) split(ros2_type_name(type), text);
   }
 
   Ros2Layout layout(std::string_view type) {
@@ -96,8 +109,9 @@ class Parser {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw DefinitionError((standard_ ? "" : "line " + std::to_string(line_) + " of ") +
-                          std::string("its definition: ") + what);
+    const std::string of(of_.empty() ? kOfBag : of_);
+    throw DefinitionError((of_.empty() ? "" : "line " + std::to_string(line_) + " of ") + of +
+                          ": " + what);
   }
 
   void split(const std::string& type, std::string_view text) {
@@ -107,7 +121,7 @@ class Parser {
     std::size_t first = 1;
     const auto end_section = [&](const char* end) {
       sections_.try_emplace(name,
-                            Section{{begin, static_cast<std::size_t>(end - begin)}, first, false});
+                            Section{{begin, static_cast<std::size_t>(end - begin)}, first, kOfBag});
     };
     while (!text.empty()) {
       const char* const at = text.data();
@@ -136,13 +150,18 @@ class Parser {
       std::string near = package;
       near.append("/").append(type);
       names = {std::move(near), type, std::string("std_msgs/").append(type)};
+      if (ros1_ && type == "Header") names = {names.back()};
     }
     for (const std::string& name : names) {
       if (const auto known = sections_.find(name); known != sections_.end()) {
         return {{name, known->second}};
       }
-      if (const std::string_view text = standard_ros2_definition(name); text.data() != nullptr) {
-        return {{name, Section{text, 1, true}}};
+      if (const auto* given = given_ == nullptr ? nullptr : given_->find(name)) {
+        return {{name, Section{given->text, 1, given->file}}};
+      }
+      const std::string_view text = ros1_ ? time_of_ros1(name) : standard_ros2_definition(name);
+      if (text.data() != nullptr) {
+        return {{name, Section{text, 1}}};
       }
     }
     return std::nullopt;
@@ -152,12 +171,13 @@ class Parser {
     const std::string package = package_.empty() ? type.substr(0, type.find('/')) : package_.back();
     const auto found = find(type, package);
     if (!found && package_.empty()) {
-      throw DefinitionError("the bag has no definition of " + type);
+      throw DefinitionError("the bag has no definition of " + type +
+                            "; --definitions takes its .msg file");
     }
     if (!found) fail("type " + type + " is not defined");
     const auto& [name, section] = *found;
     if (const auto known = done_.find(name); known != done_.end()) {
-      if (layout_.groups[known->second].least == 0) fail("type " + name + " contains itself");
+      if (layout_.groups[known->second].depth == 0) fail("type " + name + " contains itself");
       return known->second;
     }
     if (depth > kDeepestType) fail("its types are nested too deep");
@@ -166,12 +186,12 @@ class Parser {
     layout_.groups.emplace_back().type = name;
     done_.emplace(name, at);
     package_.push_back(name.substr(0, name.find('/')));
-    const auto [line, standard] = std::pair(line_, standard_);
+    const auto [line, of] = std::pair(line_, of_);
     Ros2Group filled = fields_of(section, depth);
     filled.type = name;
     layout_.groups[at] = std::move(filled);
     line_ = line;
-    standard_ = standard;
+    of_ = of;
     package_.pop_back();
     return at;
   }
@@ -179,7 +199,7 @@ class Parser {
   Ros2Group fields_of(const Section& section, std::size_t depth) {
     Ros2Group result;
     line_ = section.line - 1;
-    standard_ = section.standard;
+    of_ = section.of;
     std::string_view text = section.text;
     while (!text.empty()) {
       ++line_;
@@ -187,7 +207,7 @@ class Parser {
       if (line.empty() || line.front() == '#') continue;
       if (std::optional<Ros2Field> field = field_of(line, depth)) add(result, std::move(*field));
     }
-    result.least = std::max<std::uint64_t>(result.least, 1);  // an empty one has a byte
+    if (!ros1_) result.least = std::max<std::uint64_t>(result.least, 1);  // an empty one has a byte
     result.depth += 1;
     if (result.depth > kDeepestType) fail("its types are nested too deep");
     return result;
@@ -261,9 +281,12 @@ class Parser {
   }
 
   void set_type(Ros2Field& field, std::string_view type, std::size_t depth) {
+    if (ros1_ && (type == "time" || type == "duration")) {
+      type = type == "time" ? kRos1Time : kRos1Duration;
+    }
     for (const auto& [name, plain] : kPlain) {
       if (type != name) continue;
-      field.type = plain;
+      field.type = ros1_ && type == "byte" ? Ros2Type::int8 : plain;
       layout_.wide = layout_.wide || plain == Ros2Type::wide_text;
       return;
     }
@@ -276,10 +299,12 @@ class Parser {
   }
 
   std::map<std::string, Section> sections_;
-  std::map<std::string, std::size_t> done_;  // where in the layout; least is 0 while it is filled
+  bool ros1_;
+  const MessageDefinitions* given_;
+  std::map<std::string, std::size_t> done_;  // where in the layout; depth is 0 while it is filled
   std::vector<std::string> package_;         // of the types that are being read
   std::size_t line_ = 0;
-  bool standard_ = false;
+  std::string_view of_ = kOfBag;  // Section::of
   Ros2Layout layout_;
 };
 
@@ -315,8 +340,13 @@ std::string ros2_type_name(std::string_view type) {
   return std::string(type.substr(0, first)) + std::string(type.substr(first + 4));
 }
 
-Ros2Layout parse_ros2_definition(std::string_view type, std::string_view text) {
-  return Parser(type, text).layout(type);
+Ros2Layout parse_ros2_definition(std::string_view type, std::string_view text,
+                                 const MessageDefinitions* given) {
+  return Parser(type, text, false, given).layout(type);
+}
+
+Ros2Layout parse_ros1_definition(std::string_view type, std::string_view text) {
+  return Parser(type, text, true, nullptr).layout(type);
 }
 
 }  // namespace trussmap

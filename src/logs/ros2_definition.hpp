@@ -13,12 +13,18 @@
 //   string frame_id
 //
 // They become a layout: groups of fields in the order in which a message has them, each once. A
-// type that the text lacks is that of the standard messages (ros2_standard.hpp).
+// type that the text lacks is one that was given (message_definitions.hpp), or that of the standard
+// messages (ros2_standard.hpp).
+//
+// ROS 1 writes them alike. There `time` and `duration` are plain types, here groups of `sec` and
+// `nanosec`, as in ROS 2, so that a path leads to the same in both; `byte` has a sign; `Header` is
+// that of std_msgs, which has `seq`; and a bag has the definitions of all that is within.
 //
 // Refused are types that contain themselves, and what is larger than any true one: definitions may
 // be written by anybody.
 //
-// Source: the ROS 2 documentation, "Interfaces"; the registry of MCAP, "ros2msg".
+// Source: the ROS 2 documentation, "Interfaces"; ROS wiki, "msg"; the registry of MCAP, "ros2msg"
+// and "ros1msg".
 #pragma once
 
 #include <cstddef>
@@ -29,6 +35,8 @@
 #include <vector>
 
 namespace trussmap {
+
+class MessageDefinitions;
 
 /// Why a definition cannot be used: "line 3 of its definition: ...".
 class DefinitionError : public std::runtime_error {
@@ -70,9 +78,11 @@ struct Ros2Field {
 struct Ros2Group {
   std::string type;  ///< PACKAGE/NAME
   std::vector<Ros2Field> fields;
-  std::uint64_t least = 0;  ///< bytes that one has in a message at least; 1 or more
-  std::uint64_t all = 0;    ///< fields within it, those of lists once
-  std::size_t depth = 0;    ///< groups one within the other
+  /// Bytes that one has in a message at least; 1 or more, but in ROS 1, where an empty one has
+  /// none.
+  std::uint64_t least = 0;
+  std::uint64_t all = 0;  ///< fields within it, those of lists once
+  std::size_t depth = 0;  ///< groups one within the other
 };
 
 struct Ros2Layout {
@@ -83,7 +93,12 @@ struct Ros2Layout {
 /// "std_msgs/msg/Header" and "std_msgs/Header" are the latter.
 [[nodiscard]] std::string ros2_type_name(std::string_view type);
 
-/// Of a message of this type; with a blank text of the standard one. Throws DefinitionError.
-[[nodiscard]] Ros2Layout parse_ros2_definition(std::string_view type, std::string_view text);
+/// Of a message of this type; with a blank text of the given or the standard one. Throws
+/// DefinitionError.
+[[nodiscard]] Ros2Layout parse_ros2_definition(std::string_view type, std::string_view text,
+                                               const MessageDefinitions* given = nullptr);
+
+/// The same of ROS 1, whose text has all types within. Throws DefinitionError.
+[[nodiscard]] Ros2Layout parse_ros1_definition(std::string_view type, std::string_view text);
 
 }  // namespace trussmap

@@ -11,11 +11,12 @@
 //     compression_mode: FILE                 or MESSAGE, or none
 //
 // Without metadata.yaml, as after a power cut, the folder's files are read in the order of their
-// numbers. A file may be given alone as well.
+// numbers; so are bags of ROS 1 (.bag), which have none. A file may be given alone as well.
 //
 // Source: rosbag2_storage of ROS 2.
 #include "logs/byte_reader.hpp"
 #include "logs/mcap.hpp"
+#include "logs/ros1_bag.hpp"
 #include "logs/rosbag2_sqlite.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/write_files.hpp"
@@ -31,19 +32,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kLargestMetadata = std::uintmax_t{16} << 20U;  // bytes
-constexpr std::string_view kRos1 = "#ROSBAG V";
 
-bool begins_with(const fs::path& file, std::string_view bytes) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored)) return false;
-  std::ifstream stream(file, std::ios::binary);
-  std::string found(bytes.size(), '\0');
-  stream.read(found.data(), static_cast<std::streamsize>(found.size()));
-  return stream && found == bytes;
-}
-
-/// .db3, .mcap, and those with .zstd.
+/// .db3, .mcap, those with .zstd, and .bag.
 bool is_bag_name(const fs::path& file) {
+  if (file.extension() == ".bag") return true;
   const fs::path name = file.extension() == ".zstd" ? file.stem() : file.filename();
   return name.extension() == ".db3" || name.extension() == ".mcap";
 }
@@ -167,10 +159,8 @@ std::vector<fs::path> files_of(const fs::path& folder) {
 
 /// One file of a bag; what it lacks at its end.
 std::string read_bag_file(const fs::path& file, BagTopics& topics) {
-  if (begins_with(file, kRos1)) {
-    throw InputError(file.string(), 0,
-                     "is a bag of ROS 1, expected one of ROS 2: convert it first, with "
-                     "rosbags-convert of the Python package rosbags");
+  if (is_ros1_bag(file) || file.extension() == ".bag") {
+    return read_ros1_bag(file, file.string(), topics);
   }
   if (file.extension() == ".zstd") {
     DecompressedFile plain(file);
@@ -200,7 +190,7 @@ bool is_rosbag2(const fs::path& path) {
     return named || !bag_files_in(path).empty();
   }
   return (is_bag_name(path) && path.extension() != ".mcap" && fs::exists(path, ignored)) ||
-         begins_with(path, kRos1);
+         is_ros1_bag(path);
 }
 
 LogEnd read_rosbag2(const fs::path& path, const LogVisit& visit) {

@@ -6,6 +6,7 @@
 
 #include "io/toml_parser.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/planar.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -97,6 +98,26 @@ class TomlFields {
     }
     if (list == nullptr || found.size() != list->size()) {
       fail(*node, std::string(key) + " is no list of texts, expected [\"...\", ...]");
+    }
+    return found;
+  }
+
+  /// Pairs of numbers, [[x, y], ...].
+  std::vector<Vector2> points(const char* key) {
+    const toml::node* node = find(key);
+    std::vector<Vector2> found;
+    if (node == nullptr) return found;
+    const toml::array* list = node->as_array();
+    for (std::size_t k = 0; list != nullptr && k < list->size(); ++k) {
+      const toml::array* pair = (*list)[k].as_array();
+      if (pair == nullptr || pair->size() != 2) break;
+      const auto x = (*pair)[0].value<double>();
+      const auto y = (*pair)[1].value<double>();
+      if (!x || !y || !std::isfinite(*x) || !std::isfinite(*y)) break;
+      found.emplace_back(*x, *y);
+    }
+    if (list == nullptr || found.size() != list->size()) {
+      fail(*node, std::string(key) + " is no list of pairs of numbers, expected [[0.3, 0.3], ...]");
     }
     return found;
   }

@@ -31,55 +31,87 @@ SignalMap of_kind(SignalMap::Kind kind) {
   return map;
 }
 
-/// The two wheels that would drive as an odometry's velocities say; each holds since the one
-/// before.
-std::vector<NamedSignal> wheels_of(const std::vector<TimedTwist>& twists, double wheelbase,
-                                   std::vector<std::string>& warnings) {
-  std::vector<NamedSignal> wheels{{"left", Signal(of_kind(SignalMap::Kind::rate))},
-                                  {"right", Signal(of_kind(SignalMap::Kind::rate))}};
-  double ahead = 0.0;
-  double sideways = 0.0;
-  for (const TimedTwist& one : twists) {
+/// How a robot that goes sideways may be told: by the motions of its body.
+bool is_told_by_body(const Robot& robot) {
+  return robot.drive == DriveKind::wheels && robot.matrix.rows() == 3 && robot.matrix.cols() == 3 &&
+         robot.matrix.isIdentity();
+}
+
+/// What an odometry says: velocities that hold since the one before, or ways since then.
+struct BodyMotions {
+  SignalMap::Kind kind = SignalMap::Kind::rate;
+  std::vector<TimedTwist> motions;
+};
+
+/// Of the poses that an odometry sums up: from one to the next along an arc.
+BodyMotions motions_between(std::vector<TimedFieldPose> poses) {
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const TimedFieldPose& a, const TimedFieldPose& b) { return a.t < b.t; });
+  BodyMotions result{SignalMap::Kind::per_row, {}};
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    FieldTwist way;
+    if (k > 0) {
+      const TimedFieldPose& from = poses[k - 1];
+      const double half_turn = 0.5 * wrap_angle(poses[k].heading - from.heading);
+      const double c = std::cos(from.heading + half_turn);
+      const double s = std::sin(from.heading + half_turn);
+      const double dx = poses[k].x - from.x;
+      const double dy = poses[k].y - from.y;
+      const double arc = std::abs(half_turn) < 1e-9 ? 1.0 : half_turn / std::sin(half_turn);
+      way = {(dx * c + dy * s) * arc, (dy * c - dx * s) * arc, 2.0 * half_turn};
+    }
+    result.motions.push_back({poses[k].t, way});
+  }
+  return result;
+}
+
+BodyMotions body_motions_of(const LogMap& map, const GatheredLog& log) {
+  const OdometryMap& odometry = map.odometry;
+  const bool twist =
+      !odometry.twist.empty() || !odometry.speed.empty() || !odometry.modules.empty();
+  if (twist) return {SignalMap::Kind::rate, log.twists};
+  if (!is_frame_path(odometry.pose)) return motions_between(log.odometry);
+  return motions_between(
+      poses_along(odometry.pose, log.frames, map, odometry.line, odometry.clock));
+}
+
+/// The two wheels that would drive so.
+std::vector<NamedSignal> two_wheels(const BodyMotions& body, double wheelbase) {
+  std::vector<NamedSignal> wheels{{"left", Signal(of_kind(body.kind))},
+                                  {"right", Signal(of_kind(body.kind))}};
+  for (const TimedTwist& one : body.motions) {
     const double half = 0.5 * wheelbase * one.twist.turn;
     wheels[0].signal.add(one.t, one.twist.ahead - half);
     wheels[1].signal.add(one.t, one.twist.ahead + half);
-    ahead += std::abs(one.twist.ahead);
-    sideways += std::abs(one.twist.left);
-  }
-  constexpr double kFew = 0.02;  // of the way ahead
-  if (sideways > kFew * ahead) {
-    warnings.push_back(fmt::format(
-        "the twist also moves to the side, {:.0f} % as much as ahead: passed over; a drive of "
-        "other wheels needs [wheels] (docs/logs.md)",
-        100.0 * sideways / std::max(ahead, 1e-9)));
   }
   return wheels;
 }
 
-/// The same of the poses that an odometry sums up: from one to the next along an arc.
-std::vector<NamedSignal> wheels_of(std::vector<TimedFieldPose> poses, double wheelbase) {
-  std::stable_sort(poses.begin(), poses.end(),
-                   [](const TimedFieldPose& a, const TimedFieldPose& b) { return a.t < b.t; });
-  std::vector<NamedSignal> wheels{{"left", Signal(of_kind(SignalMap::Kind::per_row))},
-                                  {"right", Signal(of_kind(SignalMap::Kind::per_row))}};
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    double left = 0.0;
-    double right = 0.0;
-    if (k > 0) {
-      const TimedFieldPose& from = poses[k - 1];
-      const double half_turn = 0.5 * wrap_angle(poses[k].heading - from.heading);
-      const double middle = from.heading + half_turn;
-      const double chord =
-          (poses[k].x - from.x) * std::cos(middle) + (poses[k].y - from.y) * std::sin(middle);
-      const double arc =
-          std::abs(half_turn) < 1e-9 ? chord : chord * half_turn / std::sin(half_turn);
-      left = arc - wheelbase * half_turn;
-      right = arc + wheelbase * half_turn;
-    }
-    wheels[0].signal.add(poses[k].t, left);
-    wheels[1].signal.add(poses[k].t, right);
+std::vector<NamedSignal> body_columns(const BodyMotions& body,
+                                      const std::vector<std::string>& names) {
+  std::vector<NamedSignal> columns;
+  for (const std::string& name : names) columns.push_back({name, Signal(of_kind(body.kind))});
+  for (const TimedTwist& one : body.motions) {
+    columns[0].signal.add(one.t, one.twist.ahead);
+    columns[1].signal.add(one.t, one.twist.left);
+    columns[2].signal.add(one.t, one.twist.turn);
   }
-  return wheels;
+  return columns;
+}
+
+void warn_of_sideways(const std::vector<TimedTwist>& twists, std::vector<std::string>& warnings) {
+  double ahead = 0.0;
+  double sideways = 0.0;
+  for (const TimedTwist& one : twists) {
+    ahead += std::abs(one.twist.ahead);
+    sideways += std::abs(one.twist.left);
+  }
+  constexpr double kFew = 0.02;  // of the way ahead
+  if (sideways <= kFew * ahead) return;
+  warnings.push_back(fmt::format(
+      "the twist also moves to the side, {:.0f} % as much as ahead: passed over; a robot that does "
+      "so needs drive = \"wheels\" with a matrix, or [wheels] (docs/logs.md)",
+      100.0 * sideways / std::max(ahead, 1e-9)));
 }
 
 std::vector<NamedSignal> all_wheels(const LogMap& map, GatheredLog& log, WheelRows& rows) {
@@ -87,21 +119,21 @@ std::vector<NamedSignal> all_wheels(const LogMap& map, GatheredLog& log, WheelRo
   const bool two = has_two_wheels(robot);
   const std::vector<std::string> expected =
       two ? std::vector<std::string>{"left", "right"} : robot.columns;
-  if (map.odometry.line > 0) {
+  if (map.odometry.line > 0 && map.wheels.empty()) {
+    const BodyMotions body = body_motions_of(map, log);
+    if (is_told_by_body(robot)) return body_columns(body, robot.columns);
     if (!two) {
-      throw InputError(map.file.string(), map.odometry.line,
-                       fmt::format("[odometry] gives the travels of two wheels, drive {} has "
-                                   "others, expected [wheels.NAME] for each of its columns",
-                                   name_of(robot.drive)));
+      throw InputError(
+          map.file.string(), map.odometry.line,
+          fmt::format(
+              "[odometry] gives the travels of two wheels, drive {} has others, expected "
+              "[wheels.NAME] for each of its columns, or of a robot that goes sideways "
+              "drive = \"wheels\", three columns and matrix = [[1, 0, 0], [0, 1, 0], [0, 0, "
+              "1]]",
+              name_of(robot.drive)));
     }
-    const bool twist = !map.odometry.twist.empty() || !map.odometry.speed.empty();
-    if (twist) return wheels_of(log.twists, robot.wheelbase, rows.warnings);
-    std::vector<TimedFieldPose> poses = log.odometry;
-    if (is_frame_path(map.odometry.pose)) {
-      poses =
-          poses_along(map.odometry.pose, log.frames, map, map.odometry.line, map.odometry.clock);
-    }
-    return wheels_of(std::move(poses), robot.wheelbase);
+    if (body.kind == SignalMap::Kind::rate) warn_of_sideways(body.motions, rows.warnings);
+    return two_wheels(body, robot.wheelbase);
   }
   std::vector<NamedSignal> wheels;
   for (const std::string& name : expected) {
@@ -225,6 +257,25 @@ std::vector<TimedFieldPose> poses_along(const std::string& path, const FrameTree
                                  names.child, names.parent));
   }
   return poses;
+}
+
+OdometryRows odometry_rows(const LogMap& map, const GatheredLog& log,
+                           const std::vector<std::int64_t>& bounds) {
+  std::vector<NamedSignal> wheels =
+      two_wheels(body_motions_of(map, log), map.model.robot.wheelbase);
+  OdometryRows rows;
+  for (NamedSignal& one : wheels) one.signal.finish();
+  const Signal& times = wheels.front().signal;
+  if (times.size() < 3) return rows;
+  for (const std::int64_t t : bounds) {
+    if (t < times.times().front() || t > times.times().back()) continue;
+    rows.bounds.push_back(t);
+    if (rows.bounds.size() < 2) continue;
+    const std::int64_t before = rows.bounds[rows.bounds.size() - 2];
+    rows.left.push_back(wheels[0].signal.sum(before, t));
+    rows.right.push_back(wheels[1].signal.sum(before, t));
+  }
+  return rows;
 }
 
 WheelRows wheel_rows(const LogMap& map, GatheredLog& log) {

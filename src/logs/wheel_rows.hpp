@@ -28,6 +28,16 @@ struct WheelRows {
 /// Throws InputError where wheels are missing, or share no stretch of two rows.
 [[nodiscard]] WheelRows wheel_rows(const LogMap& map, GatheredLog& log);
 
+/// The way of two wheels that would drive as [odometry] says, in rows of these bounds, which lie
+/// within its times where they are added. Precondition: the map has [odometry].
+struct OdometryRows {
+  std::vector<std::int64_t> bounds;  ///< ns, of those given
+  std::vector<double> left;          ///< m
+  std::vector<double> right;
+};
+[[nodiscard]] OdometryRows odometry_rows(const LogMap& map, const GatheredLog& log,
+                                         const std::vector<std::int64_t>& bounds);
+
 /// Poses along /tf:parent.child, in order of time, `clock` (s) added to it. Throws InputError where
 /// the frames are not joined, or do not move.
 [[nodiscard]] std::vector<TimedFieldPose> poses_along(const std::string& path,

@@ -82,8 +82,7 @@ WheelTopics wheel_topics(const LogSurvey& survey) {
   return topics;
 }
 
-std::optional<WheelConstants> wheel_constants(const std::filesystem::path& log,
-                                              const WheelTopics& topics) {
+std::optional<WheelConstants> wheel_constants(const JoinedLogs& log, const WheelTopics& topics) {
   if (topics.left.empty() || topics.odometry.empty()) return std::nullopt;
   LogMap map;
   for (const std::string& path : {topics.left, topics.right}) {
@@ -95,7 +94,7 @@ std::optional<WheelConstants> wheel_constants(const std::filesystem::path& log,
   map.odometry.twist = topics.odometry;
   GatheredLog gathered;
   try {
-    gathered = gather(JoinedLogs({log}), map);
+    gathered = gather(log, map);
   } catch (const InputError&) {  // what it lacks a conversion will say
     return std::nullopt;
   }

@@ -8,7 +8,8 @@
 //   turns
 #pragma once
 
-#include <filesystem>
+#include "logs/joined_logs.hpp"
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,7 +35,7 @@ struct WheelTopics {
 [[nodiscard]] WheelTopics wheel_topics(const LogSurvey& survey);
 
 /// By least squares over the whole log; none where odometry and joints do not say the same.
-[[nodiscard]] std::optional<WheelConstants> wheel_constants(const std::filesystem::path& log,
+[[nodiscard]] std::optional<WheelConstants> wheel_constants(const JoinedLogs& log,
                                                             const WheelTopics& topics);
 
 }  // namespace trussmap

@@ -9,6 +9,7 @@
 //   entry 0   a control record: u8 kind, u32 entry, then
 //             0 start   name, type, metadata, each as u32 length and text
 //             1 finish  nothing: the number may be used again
+//             Data of an entry that is not started are passed over, and counted.
 //             2 set metadata, as u32 length and text
 //
 // Little endian. A topic is an entry's name and type. Structs are decoded by the schemas that the
@@ -63,6 +64,10 @@ class Wpilog {
       if (one.type.content != WpilogContent::schema) end.topics.push_back(std::move(one.topic));
     }
     end.cut_off = cut_off_;
+    if (unstarted_ > 0) {
+      end.passed_over.push_back(
+          {unstarted_, "records of entries that were not started, or had been finished"});
+    }
     return end;
   }
 
@@ -122,7 +127,7 @@ class Wpilog {
     if (topic == nullptr ? entry != 0 : !needed(*topic)) {
       const std::uint64_t begin = window_.offset();
       if (window_.skip(length + size) == length + size) {
-        if (topic != nullptr) ++topic->topic.messages;
+        ++(topic != nullptr ? topic->topic.messages : unstarted_);
         return true;
       }
       cut_off_ = "at byte " + std::to_string(begin) + ": ends in the middle of a record";
@@ -156,14 +161,11 @@ class Wpilog {
     return false;
   }
 
-  /// None of an entry that has been finished.
+  /// None of an entry that has not been started, as where a log's beginning is lost, or that has
+  /// been finished.
   LogEntry* topic_by(std::uint32_t entry) {
     const auto place = entries_.find(entry);
-    if (place == entries_.end()) {
-      fail_at(name_, window_.offset(),
-              "a record of entry " + std::to_string(entry) + ", which has not been started");
-    }
-    return place->second;
+    return place == entries_.end() ? nullptr : place->second;
   }
 
   static std::string text(ByteReader& reader) {
@@ -183,9 +185,6 @@ class Wpilog {
       if (entry == 0) reader.fail("entry 0 is started, expected another");
       entries_[entry] = started(name, type, reader);
     } else if (kind == 1) {
-      if (!entries_.contains(entry)) {
-        reader.fail("entry " + std::to_string(entry) + " is finished, but has not been started");
-      }
       entries_[entry] = nullptr;
     } else {
       static_cast<void>(text(reader));
@@ -277,6 +276,7 @@ class Wpilog {
   std::string cut_off_;
   std::deque<LogEntry> topics_;  // which entries and messages refer to
   std::size_t shown_topics_ = 0;
+  std::uint64_t unstarted_ = 0;  // records of no entry
   std::map<std::pair<std::string, std::string>, std::size_t> by_name_;
   std::unordered_map<std::uint32_t, LogEntry*> entries_;
   StructSchemas schemas_;

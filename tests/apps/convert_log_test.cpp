@@ -41,6 +41,41 @@ TEST(ConvertLog, TheFirstMapOfTheExampleIsTheOneThatIsThere) {
   EXPECT_EQ(body(text_of(map)), body(text_of(kLogs / "warehouse.toml")));
 }
 
+/// A bag of Humble: it says what its messages are called, not what is in them.
+TEST(ConvertLog, TakesDefinitionsThatTheBagLacks) {
+  const ScratchFolder scratch;
+  const bool debian = fs::exists("/usr/bin/python3");
+  const std::string write = std::string(debian ? "/usr/bin/python3" : "python3") + " -B '" +
+                            TRUSSMAP_SOURCE_DIR + "/tests/logs/bags/write_test_bags.py' '" +
+                            scratch.path().string() + "' db3_definitions_apart > /dev/null";
+  ASSERT_EQ(std::system(write.c_str()), 0);
+  const std::string bag = (scratch.path() / "bag.db3").string();
+  const std::string given = " --definitions " + (scratch.path() / "src").string();
+  const std::string first = (scratch.path() / "first.toml").string();
+  const Ran without = run_trussmap("convert --inspect " + bag + " --map " + first);
+  EXPECT_EQ(without.status, 0) << without.output;
+  EXPECT_NE(without.output.find("/everything: the bag has no definition of my_msgs/Everything; "
+                                "--definitions takes its .msg file\n"),
+            std::string::npos)
+      << without.output;
+  const Ran with = run_trussmap("convert --inspect " + bag + " --map " + first + "2" + given);
+  EXPECT_EQ(with.status, 0) << with.output;
+  EXPECT_NE(with.output.find("/everything/steps[0]"), std::string::npos) << with.output;
+  EXPECT_NE(with.output.find("OUT --map " + first + "2" + given), std::string::npos);
+  const fs::path map = scratch.write("map.toml",
+                                     "[robot]\nwheelbase = 0.3\n[odometry]\ntwist = \"/odom\"\n"
+                                     "[covariates]\nload = \"/everything/u8\"\n"
+                                     "[fixes]\ntopic = \"/gps\"\n");
+  const std::string convert =
+      "convert " + bag + " " + (scratch.path() / "rec").string() + " --map " + map.string();
+  const Ran refused = run_trussmap(convert);
+  EXPECT_EQ(refused.status, 2) << refused.output;
+  EXPECT_NE(refused.output.find("map.toml:6: /everything/u8 cannot be read"), std::string::npos)
+      << refused.output;
+  EXPECT_EQ(run_trussmap(convert + given).status, 0);
+  EXPECT_NE(text_of(scratch.path() / "rec" / "drive.csv").find(",load"), std::string::npos);
+}
+
 TEST(ConvertLog, MistakesAreOneLineWithWhatToDo) {
   const ScratchFolder scratch;
   const std::string log = (kLogs / "team.csv").string();
@@ -53,6 +88,9 @@ TEST(ConvertLog, MistakesAreOneLineWithWhatToDo) {
   };
   refused("convert " + log + " " + out, "--map");
   refused("convert " + log + " --map " + map, "OUT");
+  refused("convert " + log + " " + out + " --map " + map + " --definitions " + out,
+          "does not exist");
+  refused("convert " + log + " " + out + " --definitions " + map, "is for logs");
   refused("convert " + log + " " + out + ".graphml --map " + map, "named like a map");
   refused("convert " + log + " " + out + " --map " + out + "/none.toml", "none.toml");
   refused("convert --inspect " + log + " --map " + map, "there already");

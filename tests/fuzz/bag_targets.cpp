@@ -74,6 +74,10 @@ void fuzz_mcap(std::string_view bytes) {
   read_all(written("bag.mcap", bytes), &read_mcap);
 }
 
+void fuzz_ros1(std::string_view bytes) {
+  read_all(written("bag.bag", bytes), &read_rosbag2);
+}
+
 /// A definition, a line of "%", and a message of it.
 void fuzz_cdr(std::string_view bytes) {
   constexpr std::string_view kBetween = "%\n";
@@ -109,7 +113,8 @@ void fuzz_rosbag2(std::string_view bytes) {
 }  // namespace
 
 std::map<std::string, Target> bag_targets() {
-  return {{"cdr", &fuzz_cdr}, {"mcap", &fuzz_mcap}, {"rosbag2", &fuzz_rosbag2}};
+  return {
+      {"cdr", &fuzz_cdr}, {"mcap", &fuzz_mcap}, {"ros1", &fuzz_ros1}, {"rosbag2", &fuzz_rosbag2}};
 }
 
 }  // namespace trussmap::fuzz

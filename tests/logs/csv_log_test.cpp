@@ -3,6 +3,7 @@
 #include "logs/message_log.hpp"
 #include "scratch_folder.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/log_files.hpp"
 
 #include <cmath>
 #include <string>
@@ -219,6 +220,59 @@ TEST(CsvLog, ATableThatNobodyWantsIsCounted) {
   visit.message = [](const LogMessage&) { FAIL(); };
   const LogEnd end = read_csv_log(scratch.write("a.csv", "a,b\n1,2\n3,4\n"), visit);
   EXPECT_EQ(end.topics.at(0).messages, 2U);
+}
+
+/// Times, two wheels' ticks, a gyro, x, y, without a header: by blanks, tabs and commas the same
+/// map, which converts once it says what is left, how large wheels are, and what x and y are.
+TEST(CsvLog, OneWithoutAHeaderLeadsToAFirstMap) {
+  const ScratchFolder scratch;
+  std::string first;
+  for (const char* const between : {"  ", "\t", ",", ", "}) {
+    std::string text;
+    double x = 0.0, y = 0.0, heading = 0.0, left = 0.0, right = 0.0;
+    for (int k = 0; k < 400; ++k) {
+      const double turn = 0.4 * std::sin(k / 40.0);  // rad/s
+      char row[200];
+      std::snprintf(row, sizeof row, "%.7e|%d|%d|%.7e|%.7e|%.7e\n", 0.05 * k,
+                    static_cast<int>(left * 3000), static_cast<int>(right * 3000), turn, x, y);
+      for (const char* c = row; *c != '\0'; ++c) text += *c == '|' ? between : std::string(1, *c);
+      left += (0.4 - 0.15 * turn) * 0.05;
+      right += (0.4 + 0.15 * turn) * 0.05;
+      heading += turn * 0.05;
+      x += 0.4 * 0.05 * std::cos(heading);
+      y += 0.4 * 0.05 * std::sin(heading);
+    }
+    const auto file = scratch.write("a.txt", text);
+    const std::string map = inspect_log(file).map;
+    if (first.empty()) first = map;
+    EXPECT_EQ(map, first);
+  }
+  EXPECT_NE(first.find("[time]\nfield = \"column 1\""), std::string::npos) << first;
+  EXPECT_NE(first.find("[wheels.left]\nfield = \"column 2\""), std::string::npos) << first;
+  EXPECT_NE(first.find("[wheels.right]\nfield = \"column 3\""), std::string::npos) << first;
+  EXPECT_NE(first.find("#   column 4: -0.399"), std::string::npos) << first;
+  EXPECT_NE(first.find("#   column 6: "), std::string::npos) << first;
+  const auto mended = scratch.write("map.toml", first +
+                                                    "[fixes]\nx = \"column 5\"\ny = \"column 6\"\n"
+                                                    "[yaw_rate]\nfield = \"column 4\"\n"
+                                                    "unit = \"rad/s\"\n");
+  const LogRecording read = read_log_recording(scratch.path() / "a.txt", mended);
+  EXPECT_EQ(read.recording.drive.rows(), 399U);
+  EXPECT_EQ(read.recording.fixes.size(), 400U);
+}
+
+/// Poses that go to and fro are no wheels.
+TEST(CsvLog, WhatGoesToAndFroIsNoWheel) {
+  const ScratchFolder scratch;
+  std::string text;
+  for (int k = 0; k < 400; ++k) {
+    text += std::to_string(k) + " " + std::to_string(std::sin(k / 30.0)) + " " +
+            std::to_string(std::cos(k / 30.0)) + " ab\n";
+  }
+  const std::string map = inspect_log(scratch.write("a.txt", text)).map;
+  EXPECT_EQ(map.find("\n[wheels"), std::string::npos) << map;
+  EXPECT_NE(map.find("NOTHING LOOKS LIKE WHEELS"), std::string::npos);
+  EXPECT_NE(map.find("#   column 2: -0.999"), std::string::npos) << map;
 }
 
 }  // namespace

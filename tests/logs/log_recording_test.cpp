@@ -133,10 +133,20 @@ TEST(LogRecording, EveryMistakeOfAMapIsNamedWithItsLine) {
   EXPECT_TRUE(with("[robot]", "[robot").find("no TOML") != std::string::npos);
 }
 
-TEST(LogRecording, ADriveThatIsTiedToNoPlaceIsRefused) {
+/// It is the drive that it is with sightings, and it is said what it is good for.
+TEST(LogRecording, ADriveThatIsTiedToNoPlaceIsConvertedWithAWarning) {
   const std::string map = kMap;
   const std::string without = map.substr(0, map.find("[[sightings]]"));
-  EXPECT_NE(error_of(without).find("ties the drive to no place"), std::string::npos);
+  const LogRecording alone = converted(kTable, without);
+  const LogRecording tied = converted(kTable, map);
+  EXPECT_EQ(alone.recording.drive.left, tied.recording.drive.left);
+  EXPECT_EQ(alone.recording.drive.yaw_rate, tied.recording.drive.yaw_rate);
+  ASSERT_EQ(alone.warnings.size(), tied.warnings.size() + 2);
+  EXPECT_TRUE(alone.warnings[alone.warnings.size() - 2].starts_with(
+      "nothing ties the drive to a place: no sighting, fix or truth is within it. apply "));
+  EXPECT_EQ(
+      alone.warnings.back(),
+      "the gyro's bias is not known: the wheels never stand for 2 s and more, expected a rest");
 }
 
 TEST(LogRecording, ColumnsWithoutATimeAreRefused) {

@@ -262,7 +262,8 @@ TEST(Mcap, TopicsThatCannotBeReadSayWhy) {
   EXPECT_EQ(unread("foxglove.Pose", "protobuf", "..", "protobuf"), "protobuf");
   EXPECT_EQ(unread("Pose", "jsonschema", "{}", "json"), "json");
   EXPECT_EQ(unread("my_msgs/msg/A", "ros2idl", "..", "cdr"), "ros2idl");
-  EXPECT_EQ(unread("my_msgs/msg/A", "", "", "cdr"), "the bag has no definition of my_msgs/A");
+  EXPECT_EQ(unread("my_msgs/msg/A", "", "", "cdr"),
+            "the bag has no definition of my_msgs/A; --definitions takes its .msg file");
   EXPECT_EQ(unread("my_msgs/msg/A", "ros2msg", "int8 a\nint9 b\n", "cdr"),
             "line 2 of its definition: type int9 is not defined");
   EXPECT_EQ(unread("a/msg/A", "ros2msg", "string a\n", "ros1"), "ros1");

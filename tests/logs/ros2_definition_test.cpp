@@ -71,7 +71,8 @@ std::string complaint(const std::string& text) {
 
 TEST(Ros2Definition, SaysWhatIsWrong) {
   const std::string at = " of its definition: ";
-  EXPECT_EQ(complaint(""), "the bag has no definition of my_msgs/A");
+  EXPECT_EQ(complaint(""),
+            "the bag has no definition of my_msgs/A; --definitions takes its .msg file");
   EXPECT_EQ(complaint("# nothing\n"), "none");
   EXPECT_EQ(complaint("int8 a\nint9 b\n"), "line 2" + at + "type int9 is not defined");
   EXPECT_EQ(complaint("int8 a\n---\nint8 b\n"),

@@ -135,13 +135,13 @@ TEST(Rosbag2, WhatACompressedFileBecomesIsLimited) {
   EXPECT_TRUE(fs::is_empty(temporary));
 }
 
-TEST(Rosbag2, ABagOfRos1IsToBeConvertedFirst) {
+/// Whatever it is called.
+TEST(Rosbag2, ABagOfRos1IsReadAsOne) {
   const ScratchFolder scratch;
   for (const char* const name : {"a.bag", "a.db3"}) {
-    EXPECT_EQ(complaint(scratch, scratch.write(name, "#ROSBAG V2.0\n....")),
+    EXPECT_EQ(complaint(scratch, scratch.write(name, "#ROSBAG V1.2\n....")),
               std::string(name) +
-                  ": is a bag of ROS 1, expected one of ROS 2: convert it first, with "
-                  "rosbags-convert of the Python package rosbags");
+                  ": at byte 0: is a bag of ROS 1 of another version, expected #ROSBAG V2.0");
   }
 }
 
@@ -238,7 +238,8 @@ TEST(Rosbag2, TablesAreNotTrusted) {
   EXPECT_EQ(said(topic + "INSERT INTO messages VALUES (7, 2, 5, x'00')"), "cut off ");
   const ReadLog log = testing::read_lines(scratch.path() / "a.db3");
   ASSERT_EQ(log.end.topics.size(), 3U);
-  EXPECT_EQ(log.end.topics[1].unread, "the bag has no definition of my_msgs/A");
+  EXPECT_EQ(log.end.topics[1].unread,
+            "the bag has no definition of my_msgs/A; --definitions takes its .msg file");
   EXPECT_EQ(log.end.topics[1].messages, 1U);
   EXPECT_EQ(log.end.topics[2].unread, "xcdr");
 }

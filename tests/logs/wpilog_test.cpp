@@ -256,6 +256,31 @@ TEST(Wpilog, EntriesAreFinishedAndUsedAgain) {
   EXPECT_EQ(found.end.topics[2].type, "string");
 }
 
+/// As where a log's beginning is lost: what is known is read, the rest is told once.
+TEST(Wpilog, DataOfNoEntryArePassedOverAndCounted) {
+  const LoggedMessages found = logged(with_log(R"(
+  a = log.start('a', 'double')
+  log.record(a + 7, 1, b'12345678')
+  log.write(a, 1, 0.5)
+  log.record(0, 1, b'\x01' + (a + 9).to_bytes(4, 'little'))     # finishes what was never started
+  log.record(a + 7, 2, b'')
+  log.finish(a)
+  log.write(a, 2, 1.5)
+  log.start('a', 'double', entry=a + 7)
+  log.write(a + 7, 3, 2.5)
+)"));
+  EXPECT_EQ(found.error, "");
+  EXPECT_EQ(found.end.cut_off, "");
+  EXPECT_EQ(found.lines, (Lines{"a 1000 0.5", "a 3000 2.5"}));
+  ASSERT_EQ(found.end.topics.size(), 1U);
+  EXPECT_EQ(found.end.topics[0].messages, 2U);
+  ASSERT_EQ(found.end.passed_over.size(), 1U);
+  EXPECT_EQ(found.end.passed_over[0].number, 3U);
+  EXPECT_EQ(found.end.passed_over[0].what,
+            "records of entries that were not started, or had been finished");
+  EXPECT_EQ(logged(kPlain).end.passed_over.size(), 0U);
+}
+
 TEST(Wpilog, WhatIsNotWantedIsCounted) {
   const ScratchFolder scratch;
   const auto file = written_by(scratch, "from wpilog_writer import *\n" + kPlain);
@@ -286,8 +311,6 @@ TEST(Wpilog, SaysWhatIsWrongAndWhere) {
   const std::string start = "\n  a = log.start('a', 'double')\n";
   EXPECT_EQ(complaint(start + "  log.record(a, 1, b'1234')"),
             ": at byte 51: double of 4 bytes, expected 8");
-  EXPECT_EQ(complaint("\n  log.record(5, 1, b'12345678')"),
-            ": at byte 19: a record of entry 5, which has not been started");
   EXPECT_EQ(complaint("\n  log.record(0, 1, b'\\x07\\0\\0\\0\\0')"),
             ": at byte 24: a control record of kind 7, expected 0, 1 or 2");
   EXPECT_EQ(complaint("\n  log.record(0, 1, b'\\0\\1\\0\\0\\0\\xff\\0\\0\\0ab')"),

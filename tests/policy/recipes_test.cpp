@@ -40,6 +40,7 @@ const std::map<std::string, Names> kNames = {
     {"LibLZMA", {"liblzma-dev", "liblzma", {"liblzma-devel"}}},
     {"EXPAT", {"libexpat1-dev", "expat", {"expat"}}},
     {"SQLite3", {"libsqlite3-dev", "sqlite3", {"libsqlite"}}},
+    {"BZip2", {"libbz2-dev", "bzip2", {"bzip2"}}},
     {"Lz4", {"liblz4-dev", "lz4", {"lz4-c"}}},
     {"zstd", {"libzstd-dev", "zstd", {"zstd"}}},
     {"yaml-cpp", {"libyaml-cpp-dev", "yaml-cpp", {"yaml-cpp"}}}};

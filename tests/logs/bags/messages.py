@@ -22,6 +22,7 @@ BODIES = {
     "geometry_msgs/PoseStamped": "std_msgs/Header header\nPose pose\n",
     "geometry_msgs/PoseWithCovariance": "Pose pose\n# row by row\nfloat64[36] covariance\n",
     "geometry_msgs/Twist": "Vector3  linear\nVector3  angular\n",
+    "geometry_msgs/TwistStamped": "std_msgs/Header header\nTwist twist\n",
     "geometry_msgs/TwistWithCovariance": "Twist twist\nfloat64[36] covariance\n",
     "geometry_msgs/Transform": "Vector3 translation\nQuaternion rotation\n",
     "geometry_msgs/TransformStamped":

@@ -6,12 +6,15 @@ Into FOLDER go the bag and expected.txt, with all that a reader must find in it;
 printed. VARIANT "" lists them.
 """
 
+import math
 import os
 import random
+import re
 import sys
 
 from bag_writer import BagWriter
 import messages as ros
+from ros1_writer import Ros1Bag
 
 EVERYTHING = (
     """# every kind of field
@@ -76,10 +79,60 @@ def everything(draw):
         "last": 255}  # fmt: skip
 
 
-def test_bag(standard=False, count=60, wide_characters=2, **topic_options):
+EVERYTHING_OF_ROS1 = (
+    """# every kind of field
+byte ANSWER=42
+string WORDS= "a # b = c"
+bool flag
+byte raw
+char letter
+int8 i8
+uint8 u8
+int16 i16
+uint16 u16
+int32 i32
+uint32 u32
+int64 i64
+uint64 u64
+float32 f32
+float64 f64
+string words
+bool[3] flags
+int16[] steps
+string[] names
+time at
+duration[] lasting
+Part[2] parts
+Part[] more
+my_msgs/Nothing nothing
+uint8 last
+"""
+    + "=" * 80
+    + "\nMSG: my_msgs/Part\nint8 a\nfloat64 b\nHeader header\nNothing[] none\n"
+    + "=" * 80
+    + "\nMSG: my_msgs/Nothing\n"
+    + "=" * 80
+    + "\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"
+)
+
+
+def everything_of_ros1(draw):
+    message = everything(draw)
+    for name in ("short_words", "few"):
+        del message[name]
+    message["raw"] -= 128
+    message["at"] = {"sec": draw.randrange(2**32), "nanosec": draw.randrange(10**9)}
+    message["lasting"] = [{"sec": -1, "nanosec": -5}] * draw.randrange(3)
+    for part in message["parts"] + message["more"]:
+        part["header"]["seq"] = draw.randrange(2**32)
+        part["header"]["stamp"]["sec"] %= 2**32
+    return message
+
+
+def test_bag(standard=False, count=60, wide_characters=2, bag=None, **topic_options):
     """Topics at different rates; every 13th message comes late."""
     draw = random.Random(20261125)
-    bag = BagWriter()
+    bag = bag or BagWriter()
     kinds = {
         "/odom": "nav_msgs/msg/Odometry", "/joint_states": "sensor_msgs/msg/JointState",
         "/imu": "sensor_msgs/msg/Imu", "/tf": "tf2_msgs/msg/TFMessage",
@@ -168,6 +221,89 @@ def rosbag2(folder, storage="sqlite3", **options):
     return path, bag.flat(log_times_alone=storage == "sqlite3")
 
 
+def ros1(folder, name="bag.bag", **options):
+    """What test_bag has, with a type of ROS 1 in place of those with what ROS 2 alone has."""
+    bag = test_bag(True, bag=Ros1Bag())
+    draw = random.Random(20261129)
+    bag.topic("/everything", "my_msgs/Everything", EVERYTHING_OF_ROS1)
+    for k in range(60):
+        bag.write("/everything", START + k, everything_of_ros1(draw))
+    path = os.path.join(folder, name)
+    bag.write_bag(path, **options)
+    return path, bag.flat(log_times_alone=True)
+
+
+def ros1_split(folder, files=12):
+    bag = test_bag(True, bag=Ros1Bag())
+    path = os.path.join(folder, "drive")
+    os.makedirs(path)
+    share = -(-len(bag.messages) // files)
+    for k in range(files):
+        part = bag.messages[k * share : (k + 1) * share]
+        bag.write_bag(os.path.join(path, f"drive_{k}.bag"), messages=part)
+    return path, bag.flat(log_times_alone=True)
+
+
+def drive(folder, of_ros1):
+    """A minute of curves with wheels, odometry, gyro and tags, the same by ROS 1 and ROS 2."""
+    bag = Ros1Bag() if of_ros1 else BagWriter()
+    for name, kind in {"/odom": "nav_msgs/msg/Odometry", "/cmd": "geometry_msgs/msg/TwistStamped",
+                       "/joint_states": "sensor_msgs/msg/JointState", "/imu": "sensor_msgs/msg/Imu",
+                       "/tf": "tf2_msgs/msg/TFMessage", "/gps": "sensor_msgs/msg/NavSatFix"}.items():  # fmt: skip
+        bag.topic(name, kind)
+    x = y = heading = left = right = 0.0
+    for k in range(1200):
+        time = START + k * 50_000_000
+        turn = math.sin(k / 40)
+        bag.write("/odom", time, ros.odometry(time, x, y, heading, 0.5, turn))
+        bag.write("/cmd", time + 1, {"header": ros.header(time, "base_link"),
+                                     "twist": {"linear": {"x": 0.5}, "angular": {"z": turn}}})  # fmt: skip
+        turns = [left / 0.05, right / 0.05]
+        bag.write("/joint_states", time, ros.joint_state(time, ["left_wheel", "right_wheel"], turns))
+        bag.write("/imu", time + 7, ros.imu(time, turn, heading=heading))
+        if k % 100 == 0:
+            tag = ros.transform(time, "base_link", f"tag36h11:{k // 300}", 0.5 + k / 2400, 0.2, 0.1)
+            bag.write("/tf", time, ros.tf(tag))
+            bag.write("/gps", time, ros.nav_sat_fix(time, 49 + y / 111000, 8.4))
+        heading += 0.05 * turn
+        x, y = x + 0.025 * math.cos(heading), y + 0.025 * math.sin(heading)
+        left, right = left + 0.025 - 0.01 * turn, right + 0.025 + 0.01 * turn
+    path = os.path.join(folder, "drive" + (".bag" if of_ros1 else ".mcap"))
+    if of_ros1:
+        bag.write_bag(path, compression="bz2")
+    else:
+        bag.write_mcap(path)
+    return path, bag.flat(log_times_alone=of_ros1)
+
+
+def ros1_small(folder, **options):
+    """Small enough to be cut off and changed everywhere."""
+    bag = Ros1Bag()
+    bag.topic("/odom", "nav_msgs/Odometry")
+    bag.topic("/chatter", "std_msgs/String")
+    for k in range(8):
+        bag.write("/odom", START + k, ros.odometry(START, 0.1 * k, 0.2 * k, 0.3 * k))
+        bag.write("/chatter", START + k, ros.string("word " * k))
+    path = os.path.join(folder, "bag.bag")
+    bag.write_bag(path, chunk_size=1600, **options)
+    return path, bag.flat(log_times_alone=True)
+
+
+def definitions_apart(folder, write):
+    """The bag has no definitions; those of its own types are files of a workspace beside it."""
+    parts = re.split(r"^=+\nMSG: *(\S+) *\n", EVERYTHING, flags=re.MULTILINE)
+    files = {"my_msgs/Everything": parts[0], "my_msgs/Wide": WIDE, **dict(zip(parts[1::2], parts[2::2]))}
+    for name, text in files.items():
+        package, kind = name.split("/")
+        if package != "my_msgs":
+            continue
+        within = os.path.join(folder, "src", package, "msg" if kind != "Wide" else "")
+        os.makedirs(within, exist_ok=True)
+        with open(os.path.join(within, kind + ".msg"), "w", encoding="utf-8") as file:
+            file.write(text)
+    return write()
+
+
 VARIANTS = {
     "mcap_plain": lambda f: mcap(f, chunk_size=5000),
     "mcap_lz4": lambda f: mcap(f, compression="lz4", chunk_size=5000),
@@ -177,6 +313,8 @@ VARIANTS = {
     "mcap_without_summary": lambda f: mcap(f, chunk_size=5000, summary=False, index=False),
     "mcap_without_checksums": lambda f: mcap(f, compression="lz4", chunk_size=900, crc=False),
     "mcap_without_definitions": lambda f: mcap(f, definitions=False, standard=True),
+    "mcap_definitions_apart": lambda f: definitions_apart(f, lambda: mcap(f, definitions=False)),
+    "db3_definitions_apart": lambda f: definitions_apart(f, lambda: db3(f, 3)),
     "mcap_idl": lambda f: mcap(f, standard=True, topics={"schema_encoding": "ros2idl"}),
     "mcap_as_rosbag2": lambda f: mcap(f, compression="zstd", data_crc=False),
     "mcap_big_endian": lambda f: mcap(f, compression="lz4", topics={"big_endian": True}),
@@ -187,6 +325,19 @@ VARIANTS = {
     "small_zstd": lambda f: small(f, compression="zstd"),
     "small_as_rosbag2": lambda f: small(f, compression="lz4", data_crc=False),
     "small_unchunked": lambda f: small(f, chunked=False),
+    "ros1_plain": lambda f: ros1(f, chunk_size=5000),
+    "ros1_bz2": lambda f: ros1(f, compression="bz2", chunk_size=5000),
+    "ros1_lz4": lambda f: ros1(f, compression="lz4", chunk_size=5000),
+    "ros1_one_chunk": lambda f: ros1(f, compression="bz2", chunk_size=1 << 30),
+    "ros1_of_any_name": lambda f: ros1(f, name="drive.bag.active"),
+    "ros1_not_closed": lambda f: ros1(f, chunk_size=5000, closed=False),
+    "ros1_bz2_not_closed": lambda f: ros1(f, compression="bz2", chunk_size=5000, closed=False),
+    "ros1_split": ros1_split,
+    "drive_of_ros1": lambda f: drive(f, True),
+    "drive_of_ros2": lambda f: drive(f, False),
+    "ros1_small": ros1_small,
+    "ros1_small_bz2": lambda f: ros1_small(f, compression="bz2"),
+    "ros1_small_lz4": lambda f: ros1_small(f, compression="lz4"),
     "db3_of_galactic": lambda f: db3(f, 2, standard=True),
     "db3_of_humble": lambda f: db3(f, 3, standard=True),
     "db3_of_iron": lambda f: db3(f, 4),
