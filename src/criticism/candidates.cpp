@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/candidates.hpp"
 
+#include "criticism/bells.hpp"
 #include "criticism/driven_variables.hpp"
 #include "drive/wheel_kinematics.hpp"
 #include "effects/channel_physics.hpp"
@@ -100,22 +101,6 @@ Candidate plain(Channel channel, const Spread& u, Form form, std::vector<Shape> 
   one.variable = u.name;
   one.log_prior = log_prior;
   return one;
-}
-
-/// Side by side over nearly all values; none where these are all but the same.
-std::vector<Shape> bells_over(const Spread& u) {
-  std::vector<Shape> bells;
-  const double low = u.quantile(0.03);
-  const double width = (u.quantile(0.97) - low) / 3.0;
-  if (!(width > 0.0)) return bells;
-  bells.reserve(4);
-  for (int k = 0; k < 4; ++k) {
-    bells.emplace_back(
-        "exp(-((" + u.name + "-{centre})/{width})^2)",
-        std::vector<ShapeParameter>{{"centre", rounded_within(low + k * width, width)},
-                                    {"width", rounded_within(width, width)}});
-  }
-  return bells;
 }
 
 /// What the recordings have, before any candidate is tried.
@@ -342,6 +327,17 @@ Candidates of_place(Channel channel, const Area& area) {
   return at_places(bell, {1.0}, area);
 }
 
+/// Bells all over the floor show that something goes with the place, be it no one place.
+Candidates of_floor(Channel channel, const Area& area) {
+  const bool shows = channel == Channel::travel || channel == Channel::turn ||
+                     channel == Channel::creep || channel == Channel::compass;
+  std::vector<Shape> bells = shows ? bells_over(area) : std::vector<Shape>();
+  if (bells.size() < 2) return {};
+  Spread place;
+  place.name = "place";
+  return {plain(channel, place, Form::curve, std::move(bells), "a map of the floor", -3.0)};
+}
+
 Candidates of_drive_channel(Channel channel, const Grounds& grounds) {
   Candidates found;
   const bool wheel =
@@ -349,6 +345,7 @@ Candidates of_drive_channel(Channel channel, const Grounds& grounds) {
   if (!wheel && channel != Channel::drift) {
     found = of_heading(channel);
     if (channel != Channel::compass) append(found, of_place(channel, grounds.area));
+    append(found, of_floor(channel, grounds.area));
   }
   for (const Spread& u : grounds.variables) {
     const bool covariate = grounds.is_covariate(u.name);

@@ -7,7 +7,7 @@
 //   line          u                   sense       sign(u)
 //   magnitude     |u|                 square      u^2
 //   step          1 beyond c          threshold   max(0, u - c)
-//   curve         four bells over u; of the heading: two harmonics
+//   curve         four bells over u; of the heading: two harmonics; of the floor: bells all over it
 //   with heading  u sin, u cos of the heading
 //   bell, disc    a place
 //
@@ -33,7 +33,8 @@ enum class Form {
   threshold,
   curve,
   with_heading,
-  place
+  place,
+  formula  ///< formulas.hpp: sought beside what was found
 };
 
 /// Where a search for a shape parameter goes.
@@ -42,6 +43,14 @@ struct SearchRange {
   double least = 0.0;
   double most = 0.0;
 };
+
+/// How parameters come into the pattern: "{name}" each, or
+///
+///   line   angle of its normal, how far beyond the pivot it is, m     {a}*x+{b}*y>{c}
+///   wave   angle in which it goes, its length, m                      {kx}*x+{ky}*y
+///
+/// so that one may be sought without the other.
+enum class Writing { as_they_are, line, wave };
 
 struct Candidate {
   Effect effect;  ///< without coefficients
@@ -52,6 +61,8 @@ struct Candidate {
   std::vector<std::string> pattern;        ///< shapes, "{x}" and so on for the parameters
   std::vector<ShapeParameter> parameters;  ///< of the shapes
   std::vector<SearchRange> search;         ///< one per parameter
+  Writing writing = Writing::as_they_are;
+  Vector2 pivot = Vector2::Zero();  ///< m, of a line
   /// Log of the belief in it before any data, against a catalogue effect's.
   double log_prior = 0.0;
 };

@@ -4,6 +4,7 @@
 
 #include "criticism/candidates.hpp"
 #include "criticism/effect_or_process.hpp"
+#include "criticism/formulas.hpp"
 #include "criticism/refits.hpp"
 #include "fit/process_columns.hpp"
 #include "linalg/dense.hpp"
@@ -176,11 +177,17 @@ class Defence {
         std::any_of(candidates.begin(), candidates.end(), [&effect](const Candidate& one) {
           return is_of_catalogue(one) && one.effect.name == effect.name;
         });
+    // Of a formula one asks all others besides.
+    if (std::none_of(candidates.begin(), candidates.end(),
+                     [&effect](const Candidate& one) { return one.effect.name == effect.name; })) {
+      for (Candidate& one : FormulaGrammar(fit_, tests_.context()).of(effect.channel)) {
+        candidates.push_back(std::move(one));
+      }
+    }
     std::vector<Effect> asked{effect};
     for (const Candidate& one : candidates) {
-      if (one.effect.name != effect.name && (!known || is_of_catalogue(one))) {
-        asked.push_back(one.effect);
-      }
+      const bool same = one.effect.name == effect.name && one.form != Form::formula;
+      if (!same && (!known || is_of_catalogue(one))) asked.push_back(one.effect);
     }
     return asked;
   }

@@ -296,13 +296,14 @@ class Diagnostician {
 namespace {
 
 /// Without coefficients.
-std::vector<Effect> effects_found(const Diagnosis& diagnosis) {
-  std::vector<Effect> effects;
-  for (const Finding* one : found_by(diagnosis)) {
-    effects.push_back(one->effect);
-    effects.back().coefficients.clear();
+std::vector<Candidate> candidates_found(const DiagnosisRun& run) {
+  std::vector<Candidate> found;
+  for (std::size_t k = 0; k < run.candidates.size(); ++k) {
+    if (run.result.findings[k].joint.empty()) continue;  // not missing
+    found.push_back(run.candidates[k]);
+    found.back().effect.coefficients.clear();
   }
-  return effects;
+  return found;
 }
 
 /// "6 sightings were left out": what becomes of them with what is missing.
@@ -321,11 +322,14 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
   auto under = std::make_shared<const FitWithNoise>(
       options.estimate_noise ? with_noise_beside(recordings, fit, stated) : FitWithNoise{fit, {}});
   DiagnosisRun run;
+  std::vector<Candidate> found;
   std::vector<Effect> missing;
   std::optional<ModelFit> with;  // what is missing, where it can be fitted
   const auto judge = [&] {
     run = Diagnostician(recordings, under->fit, options, known).run();
-    missing = effects_found(run.result);
+    found = candidates_found(run);
+    missing.clear();
+    for (const Candidate& one : found) missing.push_back(one.effect);
     with.reset();
     if (!missing.empty()) with = if_fitted_with(recordings, under->fit, missing);
   };
@@ -335,7 +339,7 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
   };
   judge();
   if (options.estimate_noise && !missing.empty()) {
-    if (auto beside = with_noise_beside_found(recordings, *under, with, missing, stated)) {
+    if (auto beside = with_noise_beside_found(recordings, *under, with, found, stated)) {
       judge_by(std::move(*beside));
     }
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/effect_search.hpp"
 
+#include "criticism/formula_search.hpp"
 #include "criticism/known_causes.hpp"
 #include "linalg/dense.hpp"
 
@@ -194,10 +195,19 @@ void EffectSearch::find_missing() {
   eliminate_backward();
 }
 
+/// Among all that was tested, asked of the fit as it is.
+void EffectSearch::take_formula(const Tested& formula, std::vector<Tested>& still) {
+  still.push_back(formula);
+  tested_.push_back(formula);
+  Score score = tests_.test({formula.candidate.effect}).front();
+  take(tested_.back(), formula.candidate, score);
+}
+
 /// The best, then the best of what is left when conditioned on it, and so on.
 void EffectSearch::select(ScoreTest& left, const FitState& ground, std::vector<Tested>& still) {
   int dof = fit_.adjustment.dof;
   const double at_first = left.residuals().squaredNorm();
+  const FormulaGrammar grammar(ground, left.context());
   while (missing_.size() < options_.most_missing) {
     // What a first effect leaves for being so large is no second one.
     const double level = missing_.empty() ? options_.level : kSecondLevel * options_.level;
@@ -205,7 +215,11 @@ void EffectSearch::select(ScoreTest& left, const FitState& ground, std::vector<T
     if (best == nullptr) break;
     const double chi2 = left.residuals().squaredNorm();
     if (!missing_.empty() && best->score.score < kSecondShare * (at_first - chi2)) break;
-    const auto at = static_cast<std::size_t>(best - still.data());
+    const FormulasTried formulas =
+        formulas_beside(*best, still, grammar, {ground, left, dof, tried_, level});
+    const std::size_t at =
+        formulas.better.empty() ? static_cast<std::size_t>(best - still.data()) : still.size();
+    for (const Tested& one : formulas.better) take_formula(one, still);
     missing_.push_back({at, {}});
     const Score whole = tests_.test({tested_[at].candidate.effect}).front();
     left.condition_on(left.columns(tested_[at].candidate.effect));

@@ -7,7 +7,8 @@
 //   test_all         members of families quickly, the best of each and all others in full
 //   refine_families  shape parameters of the most promising
 //   let_others_claim a law of noise or a single event that explains more comes first
-//   select           best, conditioned on it the next, and so on
+//   select           best, or a formula that says it better (formula_search.hpp); conditioned on
+//                    it the next, and so on
 //   known causes     of the catalogue, that together explain what a free form does
 //   drop             backward elimination of what the others explain
 #pragma once
@@ -66,6 +67,7 @@ class EffectSearch {
   void refine(Tested& tested);
   void find_missing();
   void select(ScoreTest& left, const FitState& ground, std::vector<Tested>& still);
+  void take_formula(const Tested& formula, std::vector<Tested>& still);
   void take_known_causes(const FitState& ground, const ScoreTest& left);
   void let_others_claim(ScoreTest& left, const FitState& ground, std::vector<Tested>& still) const;
   [[nodiscard]] std::optional<TestedEvent> claiming_event(const FitState& ground,

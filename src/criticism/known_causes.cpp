@@ -3,6 +3,7 @@
 #include "criticism/known_causes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace trussmap {
@@ -178,6 +179,11 @@ std::vector<KnownCause> known_causes_of(const std::vector<std::size_t>& found,
   for (const Set& one : sets) {
     double evidence = evidence_for(one, tested, noise);
     if (coefficients_of(one) < coefficients_of(odd)) evidence += 0.5 * kOutBy * explained;
+    // A plain form pays for its oddness; so do further causes, for all that there are.
+    if (coefficients_of(odd) <= coefficients_of(one) && one.causes.size() > odd.causes.size()) {
+      evidence -= static_cast<double>(one.causes.size() - odd.causes.size()) *
+                  std::log(static_cast<double>(known.size()));
+    }
     if (evidence <= most || !all_plausible(one, ground.tests)) continue;
     most = evidence;
     best = &one;

@@ -25,6 +25,12 @@ std::vector<Candidate> plain_candidates(const FitState& fit, const ScoreTest& te
   return candidates;
 }
 
+bool was_sought(const Candidate& one) {
+  if (one.form == Form::formula) return true;
+  return std::any_of(one.effect.shape.begin(), one.effect.shape.end(),
+                     [](const Shape& shape) { return !shape.parameters().empty(); });
+}
+
 /// What explains most, each conditioned on those before it.
 std::vector<Effect> suspects(const FitState& fit) {
   ScoreTest tests(fit);
@@ -106,13 +112,11 @@ FitWithNoise with_noise_beside(const std::vector<DrivenRecording>& recordings, c
 std::optional<FitWithNoise> with_noise_beside_found(const std::vector<DrivenRecording>& recordings,
                                                     const FitWithNoise& under,
                                                     const std::optional<ModelFit>& with,
-                                                    const std::vector<Effect>& found,
+                                                    const std::vector<Candidate>& found,
                                                     const Noise& stated) {
-  const bool sought = std::any_of(found.begin(), found.end(), [](const Effect& one) {
-    return std::any_of(one.shape.begin(), one.shape.end(),
-                       [](const Shape& shape) { return !shape.parameters().empty(); });
-  });
-  if (!sought || !under.noise.changed() || !with) return std::nullopt;
+  if (!std::any_of(found.begin(), found.end(), was_sought) || !under.noise.changed() || !with) {
+    return std::nullopt;
+  }
   NoiseFitOptions options;
   options.errors = false;
   try {

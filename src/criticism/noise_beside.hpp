@@ -11,10 +11,11 @@
 // stated too large costs power, but names nothing that is not there.
 //
 // A suspect need not be right: it costs a few degrees of freedom where it is not. What acts at a
-// place or beyond a threshold is none, for it has to be sought first: once it is found, the noise
-// is asked for again beside it.
+// place or beyond a threshold is none, nor is a formula, for they have to be sought first: once
+// they are found, the noise is asked for again beside them.
 #pragma once
 
+#include "criticism/candidates.hpp"
 #include "fit/noise_fit.hpp"
 
 #include <optional>
@@ -26,11 +27,11 @@ namespace trussmap {
 [[nodiscard]] FitWithNoise with_noise_beside(const std::vector<DrivenRecording>& recordings,
                                              const ModelFit& fit, const Noise& stated);
 
-/// Where some of the effects found act at a place or beyond a threshold: the noise beside all of
+/// Where some of the effects found are no suspects, since they were sought: the noise beside all of
 /// them, which are fitted in `with` (if_fitted_with, refits.hpp). `under`: as found beside the
 /// suspects. Absent: it is the same, or cannot be told.
 [[nodiscard]] std::optional<FitWithNoise> with_noise_beside_found(
     const std::vector<DrivenRecording>& recordings, const FitWithNoise& under,
-    const std::optional<ModelFit>& with, const std::vector<Effect>& found, const Noise& stated);
+    const std::optional<ModelFit>& with, const std::vector<Candidate>& found, const Noise& stated);
 
 }  // namespace trussmap

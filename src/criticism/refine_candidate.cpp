@@ -5,6 +5,8 @@
 #include "trussmap/catalogue.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace trussmap {
@@ -60,6 +62,23 @@ std::vector<double> steps_of(const Candidate& candidate, double factor) {
   return steps;
 }
 
+/// As the pattern has them.
+std::vector<ShapeParameter> written(const Candidate& one) {
+  if (one.writing == Writing::as_they_are) return one.parameters;
+  const double angle = one.parameters[0].value;
+  const double size = one.parameters[1].value;
+  const Vector2 along(std::cos(angle), std::sin(angle));
+  if (one.writing == Writing::line) {
+    constexpr double kShortest = 1.0;  // of a normal's axes
+    const double a = rounded_within(along.x(), kShortest);
+    const double b = rounded_within(along.y(), kShortest);
+    const double c = size + one.pivot.dot(Vector2(a, b));
+    return {{"a", a}, {"b", b}, {"c", rounded_within(c, kShortest)}};
+  }
+  const double k = 2.0 * std::numbers::pi / size;
+  return {{"kx", rounded_within(k * along.x(), k)}, {"ky", rounded_within(k * along.y(), k)}};
+}
+
 }  // namespace
 
 Candidate with_parameters(const Candidate& candidate, const std::vector<double>& values) {
@@ -72,8 +91,9 @@ Candidate with_parameters(const Candidate& candidate, const std::vector<double>&
     return one;
   }
   one.effect.shape.clear();
+  const std::vector<ShapeParameter> filled_in = written(one);
   for (const std::string& pattern : candidate.pattern) {
-    one.effect.shape.emplace_back(pattern, one.parameters);
+    one.effect.shape.emplace_back(pattern, filled_in);
   }
   return one;
 }
