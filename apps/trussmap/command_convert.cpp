@@ -121,15 +121,19 @@ void part_out(ConvertOptions& options) {
   options.in.pop_back();
 }
 
+LogOptions log_options(const ConvertOptions& options) {
+  if (!options.definitions.empty() && !options.inspect && options.map.empty()) {
+    throw UsageError("--definitions is for logs, expected --map or --inspect with it");
+  }
+  return {{options.definitions.begin(), options.definitions.end()}};
+}
+
 void run_convert(ConvertOptions options) {
   part_out(options);
   const fs::path in = options.in.front();
   const fs::path out = options.out;
   const std::vector<fs::path> logs(options.in.begin(), options.in.end());
-  const LogOptions given{{options.definitions.begin(), options.definitions.end()}};
-  if (!options.definitions.empty() && !options.inspect && options.map.empty()) {
-    throw UsageError("--definitions is for logs, expected --map or --inspect with it");
-  }
+  const LogOptions given = log_options(options);
   if (options.inspect) {
     if (logs.size() > 1 && !fs::exists(logs.back()) && !is_log(logs.back())) {
       throw UsageError("convert --inspect writes a map.toml alone, expected no OUT (--map FILE)");

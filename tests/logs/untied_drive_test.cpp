@@ -102,38 +102,57 @@ std::vector<double> last_row(const fs::path& file) {
   return values;
 }
 
-/// From a table with wheels and a gyro alone to poses, by the commands that are told; with the bias
-/// that is told the heading is that of the wheels.
-TEST(UntiedDrive, ATableOfWheelsAndGyroLeadsToPoses) {
-  const ScratchFolder scratch;
-  const Drive drive = stop_and_go(10.0, 20.0, 0.05, 0.0);
+/// A table with sums of the travels and the gyro, and where the wheels end.
+struct MadeTable {
+  std::string text;
+  double x = 0.0, y = 0.0, heading = 0.0;
+};
+
+MadeTable table_of(const Drive& drive) {
+  MadeTable made;
   std::ostringstream table;
   table.precision(17);
-  table << "t,left,right,gyro\n";
+  table << "t,left,right,gyro\n0,0,0,0.05\n";
   double left = 0.0;
   double right = 0.0;
-  double heading = 0.0;
-  double x = 0.0;
-  double y = 0.0;
-  table << "0,0,0,0.05\n";
   for (std::size_t k = 0; k < drive.rows(); ++k) {
     left += drive.left[k];
     right += drive.right[k];
     table << drive.t[k] << ',' << left << ',' << right << ',' << drive.yaw_rate[k] << '\n';
     const double turn = (drive.right[k] - drive.left[k]) / kTrack;
-    x += 0.5 * (drive.left[k] + drive.right[k]) * std::cos(heading + 0.5 * turn);
-    y += 0.5 * (drive.left[k] + drive.right[k]) * std::sin(heading + 0.5 * turn);
-    heading += turn;
+    const double way = 0.5 * (drive.left[k] + drive.right[k]);
+    made.x += way * std::cos(made.heading + 0.5 * turn);
+    made.y += way * std::sin(made.heading + 0.5 * turn);
+    made.heading += turn;
   }
-  const std::string log = scratch.write("a.csv", table.str()).string();
-  const std::string map = scratch
-                              .write("map.toml",
-                                     "time.field = \"t\"\n[robot]\nwheelbase = 0.4\n[noise]\n"
-                                     "gyro = 0.0001\nleft = 0.01\nright = 0.01\n"
-                                     "[wheels]\nunit = \"m\"\nleft.field = \"left\"\n"
-                                     "right.field = \"right\"\n[yaw_rate]\nfield = \"gyro\"\n"
-                                     "unit = \"rad/s\"\n")
-                              .string();
+  made.text = table.str();
+  return made;
+}
+
+constexpr const char* kMap = R"(time.field = "t"
+[robot]
+wheelbase = 0.4
+[noise]
+gyro = 0.0001
+left = 0.01
+right = 0.01
+[wheels]
+unit = "m"
+left.field = "left"
+right.field = "right"
+[yaw_rate]
+field = "gyro"
+unit = "rad/s"
+)";
+
+/// From a table with wheels and a gyro alone to poses, by the commands that are told; with the bias
+/// that is told the heading is that of the wheels.
+TEST(UntiedDrive, ATableOfWheelsAndGyroLeadsToPoses) {
+  const ScratchFolder scratch;
+  const Drive drive = stop_and_go(10.0, 20.0, 0.05, 0.0);
+  const MadeTable table = table_of(drive);
+  const std::string log = scratch.write("a.csv", table.text).string();
+  const std::string map = scratch.write("map.toml", kMap).string();
   const fs::path rec = scratch.path() / "rec";
   const Ran made = run_trussmap("convert " + log + " " + rec.string() + " --map " + map);
   ASSERT_EQ(made.status, 0) << made.output;
@@ -159,11 +178,22 @@ TEST(UntiedDrive, ATableOfWheelsAndGyroLeadsToPoses) {
   const Ran ran = run_trussmap(apply + scratch.write("mended.toml", mended).string());
   ASSERT_EQ(ran.status, 0) << ran.output;
   const std::vector<double> last = last_row(out);
-  EXPECT_NEAR(std::remainder(last[3] - heading, 6.283185307179586), 0.0, 1e-3);
-  EXPECT_NEAR(last[1], x, 0.01);
-  EXPECT_NEAR(last[2], y, 0.01);
-  EXPECT_GT(std::abs(std::remainder(biased - heading, 6.283185307179586)), 0.1);
-  // What needs a place says so in one line.
+  EXPECT_NEAR(std::remainder(last[3] - table.heading, 6.283185307179586), 0.0, 1e-3);
+  EXPECT_NEAR(last[1], table.x, 0.01);
+  EXPECT_NEAR(last[2], table.y, 0.01);
+  EXPECT_GT(std::abs(std::remainder(biased - table.heading, 6.283185307179586)), 0.1);
+}
+
+/// What needs a place says so in one line.
+TEST(UntiedDrive, WhatNeedsAPlaceRefusesADriveAlone) {
+  const ScratchFolder scratch;
+  const fs::path rec = scratch.path() / "rec";
+  const std::string log =
+      scratch.write("a.csv", table_of(stop_and_go(10.0, 20.0, 0.05, 0.0)).text).string();
+  const std::string map = scratch.write("map.toml", kMap).string();
+  ASSERT_EQ(run_trussmap("convert " + log + " " + rec.string() + " --map " + map).status, 0);
+  const std::string apply =
+      "apply " + rec.string() + " --out " + (scratch.path() / "poses.csv").string() + " --model ";
   for (const char* const command : {"fit", "compare", "diagnose"}) {
     const Ran refused = run_trussmap(std::string(command) + " " + rec.string() + " --model " +
                                      (rec / "model.toml").string());
