@@ -10,8 +10,8 @@
 //              rms)
 //   clean      recordings with nothing missing, and with rough noise: how many miss something
 #include "bench_program.hpp"
+#include "bench_worlds.hpp"
 #include "hidden_formulas.hpp"
-#include "linalg/dense.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/fit_model.hpp"
@@ -19,7 +19,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -92,16 +92,6 @@ double apart(const std::vector<Vector2>& a, const std::vector<Vector2>& b) {
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, a.size())));
 }
 
-/// How much of the truth's trace the other's columns can show.
-double cosine_of(const Effect& truth, const Effect& found, const ScoreTest& tests) {
-  const std::vector<Score> scores = tests.test({truth, found});
-  const Eigen::Map<const Eigen::VectorXd> a(truth.coefficients.data(),
-                                            static_cast<Eigen::Index>(truth.coefficients.size()));
-  const Eigen::VectorXd trace = scores[0].projected * a;
-  return (scores[1].projected * least_squares(scores[1].projected, trace)).norm() /
-         std::max(trace.norm(), 1e-300);
-}
-
 struct Outcome {
   std::string formula;
   bool missing = false;
@@ -139,7 +129,9 @@ std::optional<Outcome> outcome_of(const Options& options, std::size_t at, std::u
   const SimulatedRecording clean = simulate(settings, {});
   const ModelFit fit = fit_model({with_wheels(clean.drive.recording, robot)}, clean.model);
   const ScoreTest tests(*fit.state);
-  hidden.effect.coefficients = coefficients_at(hidden.effect, tests, times, seed);
+  World drawn;
+  drawn.seed = 7;  // of the direction, with the recording's
+  hidden.effect.coefficients = sized({hidden.effect}, drawn, tests, times, seed);
   if (hidden.effect.coefficients.empty()) return std::nullopt;
   const SimulatedRecording world = simulate(settings, {hidden.effect});
   settings.noise_free = true;
@@ -155,7 +147,7 @@ std::optional<Outcome> outcome_of(const Options& options, std::size_t at, std::u
   Model found = world.model;
   if (result.under) found.noise = result.under->fit.model.noise;
   if (one.missing) {
-    one.cosine = cosine_of(hidden.effect, result.findings.front().effect, tests);
+    one.cosine = cosine(hidden.effect, result.findings.front().effect, tests);
     one.found = one.cosine >= 0.95;
     one.first = told(result.findings.front().effect);
     for (const Finding& finding : result.findings) {

@@ -108,23 +108,4 @@ std::vector<HiddenFormula> hidden_formulas(const Extent& extent, std::uint64_t s
   return list;
 }
 
-std::vector<double> coefficients_at(const Effect& effect, const ScoreTest& tests, double times,
-                                    std::uint64_t seed) {
-  const Score score = tests.test({effect}).front();
-  if (score.dof < static_cast<int>(effect.shape.size())) return {};
-  std::mt19937_64 random(seed * 1299709 + 7);
-  std::normal_distribution<double> normal;
-  Eigen::VectorXd direction(score.projected.cols());
-  for (double& one : direction) one = normal(random);
-  const double size = (score.projected * direction).norm();
-  if (!(size > 0.0)) return {};
-  direction *= times * std::sqrt(kDetectableScore) / size;
-  const double prior_sd = facts_of(effect.channel).prior_sd;
-  for (Eigen::Index k = 0; k < direction.size(); ++k) {
-    const double most = score.largest[static_cast<std::size_t>(k)];
-    if (std::abs(direction[k]) * most > prior_sd) return {};
-  }
-  return {direction.begin(), direction.end()};
-}
-
 }  // namespace trussmap::bench

@@ -5,11 +5,9 @@
 // that are drawn from the world's seed.
 #pragma once
 
-#include "criticism/score_test.hpp"
 #include "trussmap/simulated_recording.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,10 +31,5 @@ struct Extent {
 
 /// All of them, constants drawn anew for each seed.
 [[nodiscard]] std::vector<HiddenFormula> hidden_formulas(const Extent& extent, std::uint64_t seed);
-
-/// Coefficients in a random direction whose expected score is `times`^2 times the smallest that is
-/// detected; empty where the recording shows none of a possible size.
-[[nodiscard]] std::vector<double> coefficients_at(const Effect& effect, const ScoreTest& tests,
-                                                  double times, std::uint64_t seed);
 
 }  // namespace trussmap::bench

@@ -76,6 +76,27 @@ std::string event_of(const Shape& shape) {
   return "each event";
 }
 
+constexpr std::string_view kPerUnit = " per unit of ";
+
+/// Of "u*v", where both have a unit of their own: " per m/s per kg of payload".
+std::string per_shape(const Shape& shape);
+std::optional<std::string> per_product(const std::string& text) {
+  constexpr std::string_view kNoPlainFactor = "+-/^<>,";
+  const std::size_t times = text.find('*');
+  if (times == std::string::npos || times != text.rfind('*') ||
+      text.find_first_of(kNoPlainFactor) != std::string::npos) {
+    return std::nullopt;
+  }
+  const auto brackets = [&](char one) {
+    return std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(times), one);
+  };
+  if (brackets('(') != brackets(')')) return std::nullopt;  // inside of one
+  const std::string first = per_shape(text.substr(0, times));
+  const std::string second = per_shape(text.substr(times + 1));
+  if (first.starts_with(kPerUnit) || second.starts_with(kPerUnit)) return std::nullopt;
+  return first + second;
+}
+
 /// " per m/s": what a coefficient's size is the size of, by its shape.
 std::string per_shape(const Shape& shape) {
   if (shape == "1") return "";
@@ -93,7 +114,11 @@ std::string per_shape(const Shape& shape) {
   if (shape.variables() == std::vector{text} && text.ends_with(kKilograms)) {
     return " per kg of " + text.substr(0, text.size() - kKilograms.size());
   }
-  return " per unit of " + text;
+  if (text.find_first_of("<>") != std::string::npos) return " where " + text;
+  // What goes from 0 to 1, or back, has no unit.
+  if (text.starts_with("exp(-t/") || text.starts_with("1-exp(-t/")) return " times " + text;
+  if (std::optional<std::string> product = per_product(text)) return *std::move(product);
+  return std::string(kPerUnit) + text;
 }
 
 /// "each event turns ..." with the event named, where the shape is one.

@@ -102,5 +102,17 @@ TEST(EffectWords, ALoadIsInKilograms) {
   EXPECT_TRUE(in_words(lights, {0.0001}).ends_with(" per unit of lights"));
 }
 
+TEST(EffectWords, FormulasSayTheirUnits) {
+  const auto said = [](const Shape& shape) {
+    return in_words(Effect{"own", Channel::travel, {shape}, {0.01}}, {0.001});
+  };
+  EXPECT_TRUE(said("speed*payload_kg").ends_with(" per m/s per kg of payload"));
+  EXPECT_TRUE(said("abs(turn_rate)*payload_kg").ends_with(" per rad/s turned per kg of payload"));
+  EXPECT_TRUE(said("speed*sin(heading)").ends_with(" per unit of speed*sin(heading)"));
+  EXPECT_TRUE(said("sin(2*heading)").ends_with(" per unit of sin(2*heading)"));
+  EXPECT_TRUE(said("0.8*x+0.6*y>10.2").ends_with(" where 0.8*x+0.6*y>10.2"));
+  EXPECT_TRUE(said("exp(-t/200)").ends_with(" times exp(-t/200)"));
+}
+
 }  // namespace
 }  // namespace trussmap::effect_words_test
