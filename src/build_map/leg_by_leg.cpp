@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "build_map/leg_by_leg.hpp"
 
-#include "build_map/session.hpp"
+#include "build_map/mapped_session.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/gate.hpp"
 
@@ -41,7 +41,7 @@ BuiltMap map_leg_by_leg(const std::vector<SightedDrive>& sessions, const LegByLe
   BuiltMap result;
   result.method = options.build.method;
   for (const SightedDrive* session : in_order(sessions)) {
-    Session(*session, options, builder, result).run();
+    MappedSession(*session, options, builder, result).run();
   }
   result.relaxed = options.build.relax;
   if (options.build.relax) builder.relax();

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/wheel_noise.hpp"
-
 #include "geometry/units.hpp"
+#include "trussmap/wheel_noise.hpp"
 
 #include <algorithm>
 #include <cmath>

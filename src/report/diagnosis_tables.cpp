@@ -76,7 +76,7 @@ FindingVerdict verdict_on(const Finding& one, const FindingSize& size, const Dia
 std::string chance_of(const Finding& one, const Diagnosis& diagnosis) {
   const bool second = one.status == Status::missing && &one != &diagnosis.findings.front();
   return second && one.p_adjusted >= diagnosis.level ? "seen once the first is in"
-                                                   : chance_text(one.p_adjusted);
+                                                     : chance_text(one.p_adjusted);
 }
 
 std::string drop_text(const Diagnosis& diagnosis, const HeldOutMetrics& with) {
@@ -226,8 +226,8 @@ PageTable others_table(const Diagnosis& diagnosis) {
   table.caption = "Laws of noise and single events, the likeliest of each";
   table.headings = {"what", "which", "in words", "explains chi\u00b2", "p, adjusted"};
   table.texts = 3;
-  const auto add = [&table](const std::string& what, const std::string& which,
-                            const std::string& words, double score, double p) {
+  const auto add = [&table, &diagnosis](const std::string& what, const std::string& which,
+                                        const std::string& words, double score, double p) {
     table.rows.push_back(
         {what, which, typeset(words), fmt::format("{:.1f}", score), chance_text(p)});
     table.tones.push_back(p < diagnosis.level ? Tone::bad : Tone::neutral);

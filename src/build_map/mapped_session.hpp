@@ -15,11 +15,11 @@
 
 namespace trussmap {
 
-class Session {
+class MappedSession {
  public:
   /// Counts go to `result`.
-  Session(const SightedDrive& drive, const LegByLegOptions& options, MapBuilder& builder,
-          BuiltMap& result);
+  MappedSession(const SightedDrive& drive, const LegByLegOptions& options, MapBuilder& builder,
+                BuiltMap& result);
 
   /// Hands every leg to the builder.
   void run();

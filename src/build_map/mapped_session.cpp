@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "build_map/session.hpp"
+#include "build_map/mapped_session.hpp"
 
 #include "map/heading_reset.hpp"
 #include "trussmap/error.hpp"
@@ -19,8 +19,8 @@ constexpr double kGuidedHeading = 0.01;  // rad, standard deviation of a first h
 
 }  // namespace
 
-Session::Session(const SightedDrive& drive, const LegByLegOptions& options, MapBuilder& builder,
-                 BuiltMap& result)
+MappedSession::MappedSession(const SightedDrive& drive, const LegByLegOptions& options,
+                             MapBuilder& builder, BuiltMap& result)
     : drive_(drive),
       own_axes_(!options.guided && !drive.recording().drive.has_compass()),
       recording_(drive.recording()),
@@ -29,7 +29,7 @@ Session::Session(const SightedDrive& drive, const LegByLegOptions& options, MapB
       result_(result),
       path_(driven_path(drive.drive())) {}
 
-void Session::run() {
+void MappedSession::run() {
   for (const SurveyPoint& point : recording_.survey) {
     survey_.emplace(point.landmark, Vector2(point.x, point.y));
   }
@@ -53,7 +53,7 @@ void Session::run() {
 }
 
 /// A session begins at the nearest landmark of the map that it sees, the first one anywhere.
-void Session::begin(const Stop& stop) {
+void MappedSession::begin(const Stop& stop) {
   std::vector<Accepted> seen = accepted_at(stop);
   const bool first_ever = builder_.landmarks() == 0;
   const auto at = std::find_if(seen.begin(), seen.end(), [&](const Accepted& one) {
@@ -73,13 +73,13 @@ void Session::begin(const Stop& stop) {
 }
 
 /// By the compass; without one as the best fit has it.
-HeadingEstimate Session::first_heading(const Sighting& at, const InitialHeading& first) {
+HeadingEstimate MappedSession::first_heading(const Sighting& at, const InitialHeading& first) {
   if (recording_.drive.has_compass() || !options_.guided) return with_yaw(at, first.heading);
   return {drive_.guided_heading(at), kGuidedHeading * kGuidedHeading};
 }
 
 /// Taken together with what the sighting's yaw and the landmark's orientation in the best fit say.
-HeadingEstimate Session::with_yaw(const Sighting& at, const HeadingEstimate& heading) {
+HeadingEstimate MappedSession::with_yaw(const Sighting& at, const HeadingEstimate& heading) {
   if (!options_.guided) return with_own_yaw(at, heading);
   const Landmark& landmark = options_.guide.landmark(*options_.guide.find(at.landmark));
   const double yaw = drive_.yaw_of(at);
@@ -89,7 +89,7 @@ HeadingEstimate Session::with_yaw(const Sighting& at, const HeadingEstimate& hea
 }
 
 /// A landmark's orientation is what its first yaw made it, and the better known the more are read.
-HeadingEstimate Session::with_own_yaw(const Sighting& at, const HeadingEstimate& heading) {
+HeadingEstimate MappedSession::with_own_yaw(const Sighting& at, const HeadingEstimate& heading) {
   const double yaw = drive_.yaw_of(at);
   if (std::isnan(yaw) || !(heading.variance > 0.0)) return heading;
   const double own = drive_.yaw_sd() * drive_.yaw_sd();
@@ -108,7 +108,7 @@ HeadingEstimate Session::with_own_yaw(const Sighting& at, const HeadingEstimate&
 }
 
 /// Nearest first: the landmark stood on, else the nearest seen, is the stop's reference.
-std::vector<Session::Accepted> Session::accepted_at(const Stop& stop) const {
+std::vector<MappedSession::Accepted> MappedSession::accepted_at(const Stop& stop) const {
   std::vector<Accepted> accepted;
   for (std::size_t k = stop.first; k < stop.first + stop.count; ++k) {
     const Sighting& sighting = recording_.sightings[k];
@@ -121,7 +121,7 @@ std::vector<Session::Accepted> Session::accepted_at(const Stop& stop) const {
   return accepted;
 }
 
-void Session::visit(const Stop& stop) {
+void MappedSession::visit(const Stop& stop) {
   pose_ = drive_.reckon(pose_, time_, stop.t, readings_used_until_);
   time_ = stop.t;
   std::vector<Accepted> accepted = accepted_at(stop);
@@ -134,18 +134,18 @@ void Session::visit(const Stop& stop) {
 }
 
 /// A new landmark cannot be placed while nothing tells a further session's heading.
-bool Session::has_map_axes() const {
+bool MappedSession::has_map_axes() const {
   return !own_axes_ || builder_.landmarks() < 2 || builder_.pose().has_value();
 }
 
-Arrival Session::arrive_at(const Accepted& at) {
+Arrival MappedSession::arrive_at(const Accepted& at) {
   if (own_axes_) {
     return builder_.arrive(at.sighting->landmark, Motion{pose_.pose, pose_.covariance}, at.offset);
   }
   return builder_.arrive(at.sighting->landmark, in_map(landmark_from_pose(pose_, at.offset)));
 }
 
-void Session::arrive(const Stop& stop, const Accepted& at) {
+void MappedSession::arrive(const Stop& stop, const Accepted& at) {
   const HeadingEstimate heading =
       own_axes_ ? HeadingEstimate{} : heading_after(at, landmark_from_pose(pose_, at.offset));
   const Arrival arrival = arrive_at(at);
@@ -161,14 +161,14 @@ void Session::arrive(const Stop& stop, const Accepted& at) {
   settle(stop, at, heading);
 }
 
-Traversal Session::in_map(const PositionEstimate& place) const {
+Traversal MappedSession::in_map(const PositionEstimate& place) const {
   const Matrix2& R = options_.to_map;
   return {R * place.position, R * place.covariance * R.transpose()};
 }
 
 /// With a compass as reckoned; without, as the best fit has it, and as certain as one that is taken
 /// from the landmarks at both ends of the leg.
-HeadingEstimate Session::heading_after(const Accepted& at, const PositionEstimate& place) {
+HeadingEstimate MappedSession::heading_after(const Accepted& at, const PositionEstimate& place) {
   const HeadingEstimate reckoned{pose_.pose.heading, pose_.covariance(2, 2)};
   if (recording_.drive.has_compass() || !options_.guided) {
     return with_yaw(*at.sighting, reckoned);
@@ -185,7 +185,7 @@ HeadingEstimate Session::heading_after(const Accepted& at, const PositionEstimat
 }
 
 /// Everything from here on is reckoned from this landmark, seen at this stop.
-void Session::settle(const Stop& stop, const Accepted& at, const HeadingEstimate& heading) {
+void MappedSession::settle(const Stop& stop, const Accepted& at, const HeadingEstimate& heading) {
   reference_ = at.sighting;
   pose_ = own_axes_ ? PoseEstimate{} : pose_from_landmark(heading, at.offset);
   start_heading_variance_ = heading.variance;
@@ -195,7 +195,7 @@ void Session::settle(const Stop& stop, const Accepted& at, const HeadingEstimate
 }
 
 /// Numbers of legs after which every route that the recording drives has been driven once more.
-std::vector<std::size_t> Session::tour_ends() const {
+std::vector<std::size_t> MappedSession::tour_ends() const {
   using Way = std::pair<std::string, std::string>;
   std::vector<Way> ways;
   const Sighting* last = nullptr;
@@ -224,7 +224,7 @@ std::vector<std::size_t> Session::tour_ends() const {
   return ends;
 }
 
-void Session::note_tour() {
+void MappedSession::note_tour() {
   constexpr int kFewest = 3;
   const LandmarkGraph map = builder_.map();
   int known = 0;
@@ -241,7 +241,7 @@ void Session::note_tour() {
 /// The paper's averages are plain and its stiffness is that of the mean error: sightings far poorer
 /// than traversals would only spoil a route, and a landmark that the robot stands on elsewhere does
 /// better without them.
-bool Session::dilutes(const std::string& landmark, const Matrix2& covariance) const {
+bool MappedSession::dilutes(const std::string& landmark, const Matrix2& covariance) const {
   const bool plain =
       options_.build.method == Method::elastic || options_.build.method == Method::elastic_printed;
   if (plain && options_.stood_on.contains(landmark)) return true;
@@ -252,7 +252,7 @@ bool Session::dilutes(const std::string& landmark, const Matrix2& covariance) co
 }
 
 /// The landmarks that are seen from a stop beside its reference: routes from there.
-void Session::observe(const std::vector<Accepted>& others) {
+void MappedSession::observe(const std::vector<Accepted>& others) {
   for (const Accepted& other : others) {
     if (other.sighting->landmark == reference_->landmark) continue;
     if (own_axes_) {
