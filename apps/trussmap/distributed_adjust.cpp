@@ -4,6 +4,7 @@
 
 #include "page_runtime.hpp"
 #include "results/json.hpp"
+#include "results/pose_graphs.hpp"
 #include "team.hpp"
 #include "terminal.hpp"
 #include "trussmap/distributed.hpp"
@@ -59,7 +60,8 @@ void run_distributed_adjust(const DistributedAdjustOptions& options) {
   if (!first) return;
   Files files;
   if (!options.json.empty()) {
-    files.emplace_back(options.json, results::json_text(run));
+    files.emplace_back(options.json, results::json_text(results::DistributedReport{
+                                         run.result, options.solver, run.processes}));
   }
   files.write();
   fmt::print("{}", table(run, options.solver));
