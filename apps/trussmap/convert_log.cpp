@@ -36,7 +36,7 @@ std::string name_text(const std::string& name) {
 
 /// "the table" is its column of topics, where there is but one log.
 std::string topic_text(const LogTopicFacts& topic) {
-  const std::string name = topic.name.empty() ? "(the table)" : name_text(topic.name);
+  std::string name = topic.name.empty() ? "(the table)" : name_text(topic.name);
   if (topic.file.empty()) return name;
   return name_text(topic.file) + (topic.name.empty() ? "" : " " + name);
 }

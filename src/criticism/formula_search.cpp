@@ -35,6 +35,7 @@ std::vector<Channel> channels_of(const std::vector<Tested>& still, double best) 
   std::sort(order.begin(), order.end());
   if (order.size() > kMostChannels) order.resize(kMostChannels);
   std::vector<Channel> channels;
+  channels.reserve(order.size());
   for (const auto& one : order) channels.push_back(one.second);
   return channels;
 }

@@ -221,13 +221,14 @@ void FormulaGrammar::add_planes(Channel channel, std::vector<Candidate>& all) co
     }
   }
   // Where a wave's sine and cosine are free, its trace changes over half of a wave per floor.
-  constexpr double kWaves = 3.5;  // along the diagonal, of the shortest
+  constexpr int kHalfWaves = 7;  // along the diagonal, of the shortest; of the longest 2
   const double diagonal = 2.0 * reach_;
   Candidate wave = family(channel, "a wave across the floor", "place", kOfFloor,
                           {"sin({kx}*x+{ky}*y)", "cos({kx}*x+{ky}*y)"});
   wave.writing = Writing::wave;
   wave.parameters = {{"angle", 0.0}, {"length", 0.0}};
-  for (double waves = 1.0; waves <= kWaves; waves += 0.5) {
+  for (int halves = 2; halves <= kHalfWaves; ++halves) {
+    const double waves = 0.5 * halves;
     const int angles = static_cast<int>(std::lround(std::numbers::pi * waves / 0.5));
     const double length = diagonal / waves;
     wave.search = {{0.5 * turn / angles, -turn, turn},

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Several logs inspected as one: what each has, which clock each has, and a first map for all.
+#include "io/recording_streams.hpp"
 #include "logs/calendar.hpp"
 #include "logs/joined_logs.hpp"
 #include "logs/log_motion.hpp"

@@ -56,6 +56,7 @@ GivenDefinitions given_definitions(const LogOptions& options) {
 
 std::vector<LogCount> counts_of(const std::vector<PassedOver>& passed_over) {
   std::vector<LogCount> counts;
+  counts.reserve(passed_over.size());
   for (const PassedOver& one : passed_over) {
     counts.push_back({static_cast<std::size_t>(one.number), one.what + ", passed over"});
   }

@@ -24,8 +24,9 @@ double range_of(const NamedFacts* field) {
 
 const NamedFacts* field_of(const FreeFields& fields, const std::string& topic,
                            const std::string& file, const std::string& name) {
+  const std::string path = topic + "/" + name;
   for (const NamedFacts& one : fields.all()) {
-    if (one.topic == topic && one.file == file && one.path == topic + "/" + name) return &one;
+    if (one.topic == topic && one.file == file && one.path == path) return &one;
   }
   return nullptr;
 }
