@@ -34,7 +34,7 @@ template <typename T>
 class RowClass {
  public:
   RowClass(py::module_& module, const char* name, const char* about = "")
-      : class_(module, name, *about == '\0' ? doc(name) : about), header_(name) {
+      : class_(module, name, docstring(name, about)), header_(name) {
     if constexpr (results::HasFields<T>) {
       add_fields<T, T>(class_, results::kDescribed<T>,
                        [](const T& self) -> const T& { return self; });
@@ -82,6 +82,11 @@ class RowClass {
   py::class_<T>& type() { return class_; }
 
  private:
+  static const char* docstring(const char* name, const char* about) {
+    if (*about != '\0') return about;
+    return *doc(name) == '\0' ? "A row: attributes, and to_dict() for tables." : doc(name);
+  }
+
   /// Names of the properties, in their order.
   static std::vector<std::string> columns(const py::object& self) {
     return noted_names(py::type::of(self));

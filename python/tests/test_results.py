@@ -197,11 +197,11 @@ class OnTheRobot(unittest.TestCase):
         covariance = numpy.diag([4e-4, 1e-4])
         kinds = [builder.arrive(name, leg, covariance).kind
                  for name, leg in (("door", (4.1, 0.3)), ("stairs", (0.2, 5.0)),
-                                   ("dock", (-4.0, -5.1)))]
+                                   ("dock", (-4.27, -5.27)))]
         self.assertEqual(kinds, ["new landmark", "new landmark", "loop closed"])
         self.assertEqual(builder.landmarks, ["dock", "door", "stairs"])
-        # The loop's error of (0.3, 0.2) is shared out among its three legs.
-        numpy.testing.assert_allclose(builder.position("door"), [4.0, 0.3 - 0.2 / 3.0], atol=0.05)
+        # The loop's error of (0.03, 0.03) is shared out among its three legs.
+        numpy.testing.assert_allclose(builder.position("door"), [4.09, 0.29], atol=0.003)
         self.assertEqual(builder.here, "dock")
         with self.assertRaises(KeyError):
             builder.position("nowhere")
