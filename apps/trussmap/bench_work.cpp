@@ -27,7 +27,7 @@ namespace {
 constexpr const char* kLog = "steps.json";
 constexpr const char* kModel = "model.toml";
 
-std::vector<ProgressStep> stages() {
+std::vector<Stage> stages() {
   return {{"fitting the map", 5}, {"looking for what is missing", 50}, {"comparing", 10}};
 }
 

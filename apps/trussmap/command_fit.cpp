@@ -6,7 +6,6 @@
 #include "model_recordings.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
-#include "results/common.hpp"
 #include "results/criticism.hpp"
 #include "results/json.hpp"
 #include "terminal.hpp"

@@ -143,10 +143,10 @@ void add_stated_noise(const Command& command, ModelRecordingsOptions& options) {
 Session read_session(const ModelRecordingsOptions& options, bool drive_alone) {
   const std::vector<Recording> read = read_recordings(options.recordings, drive_alone);
   Model model = read_model(options.model, read);
-  static_cast<void>(with_wheels(read, model.robot));  // what is wrong with them goes first
+  std::vector<DrivenRecording> recordings = with_wheels(read, model.robot);
   check_stretches(read, options.exclude);
   warn_of_mistakes(read, model, options.model, !drive_alone);
-  return open_session(read, std::move(model), session_options(options));
+  return open_session(std::move(recordings), std::move(model), session_options(options));
 }
 
 }  // namespace trussmap::app

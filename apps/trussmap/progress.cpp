@@ -34,7 +34,7 @@ void ProgressClock::next(double seconds) {
   total_ = 0;
 }
 
-void ProgressClock::insert(const std::vector<ProgressStep>& steps) {
+void ProgressClock::insert(const std::vector<Stage>& steps) {
   steps_.insert(steps_.begin() + static_cast<std::ptrdiff_t>(begun_), steps.begin(), steps.end());
 }
 
@@ -81,7 +81,7 @@ std::string ProgressClock::line(double seconds) const {
   return shortened(text, kWidth - rest.size()) + rest;
 }
 
-Progress::Progress(std::vector<ProgressStep> steps) : clock_(std::move(steps)) {
+Progress::Progress(std::vector<Stage> steps) : clock_(std::move(steps)) {
   if (can_rewrite_lines(stderr)) thread_ = std::thread([this] { run(); });
 }
 
@@ -98,7 +98,7 @@ void Progress::next() {
   clock_.next(seconds());
 }
 
-void Progress::insert(const std::vector<ProgressStep>& steps) {
+void Progress::insert(const std::vector<Stage>& steps) {
   const std::scoped_lock lock(mutex_);
   clock_.insert(steps);
 }

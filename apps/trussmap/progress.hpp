@@ -23,17 +23,15 @@
 
 namespace trussmap::app {
 
-using ProgressStep = Stage;
-
 /// Where a run of steps is. Without a terminal, so that it can be tested.
 class ProgressClock {
  public:
-  explicit ProgressClock(std::vector<ProgressStep> steps) : steps_(std::move(steps)) {}
+  explicit ProgressClock(std::vector<Stage> steps) : steps_(std::move(steps)) {}
 
   /// The next step begins, the first one with the first call. `seconds`: since the run began.
   void next(double seconds);
   /// More steps than were known, after the present one.
-  void insert(const std::vector<ProgressStep>& steps);
+  void insert(const std::vector<Stage>& steps);
   /// What the present step is about at the moment.
   void say(std::string what) { said_ = std::move(what); }
   /// So many of its parts are done.
@@ -47,7 +45,7 @@ class ProgressClock {
   [[nodiscard]] double share_before() const;
   [[nodiscard]] double share_after() const;
 
-  std::vector<ProgressStep> steps_;
+  std::vector<Stage> steps_;
   std::size_t begun_ = 0;  ///< how many have begun
   double since_ = 0.0;     ///< when the present one did
   std::string said_;
@@ -58,13 +56,13 @@ class ProgressClock {
 class Progress {
  public:
   /// Nothing has begun: call next().
-  explicit Progress(std::vector<ProgressStep> steps);
+  explicit Progress(std::vector<Stage> steps);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   void next();
-  void insert(const std::vector<ProgressStep>& steps);
+  void insert(const std::vector<Stage>& steps);
   void say(const std::string& what);
   void report(int done, int total);
   /// Takes the line away; before anything is printed.

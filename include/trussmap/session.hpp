@@ -6,7 +6,7 @@
 // The way from recordings and a model to what compare, fit, diagnose and discover say, as the
 // command and Python go it:
 //
-//   recordings, model --open_session--> checked, with their wheels, prepared
+//   recordings, model --open_session--> with their wheels, prepared
 //                     --compare, fit, diagnose, discover--> a report: the result, what dead
 //                       reckoning owes to which noise, the robot's constants, notes
 //
@@ -15,7 +15,6 @@
 #pragma once
 
 #include "trussmap/calibrate.hpp"
-#include "trussmap/check.hpp"
 #include "trussmap/compare.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/discover.hpp"
@@ -46,8 +45,8 @@ struct Stage {
 struct SessionOptions {
   FitOptions fit = gated_fit();
   LegOptions legs = {};
-  std::optional<double> every =
-      {};  ///< s between frames of sightings; 0: all; none: as errors last
+  /// s between frames of sightings; 0: all; none: as long as their errors last
+  std::optional<double> every = {};
   double level = kSignificance;
   bool estimate_noise = true;    ///< of diagnose and discover; else what the model states
   std::size_t most_effects = 6;  ///< that discover adds
@@ -64,9 +63,9 @@ struct Session {
   SessionOptions options;
 };
 
-/// `recordings`: as they were read. Throws as with_wheels and fit_model do, and
-/// std::invalid_argument where times to leave out are none of their recording's.
-[[nodiscard]] Session open_session(const std::vector<Recording>& recordings, Model model,
+/// Throws as fit_model does, and std::invalid_argument where times to leave out are none of their
+/// recording's.
+[[nodiscard]] Session open_session(std::vector<DrivenRecording> recordings, Model model,
                                    const SessionOptions& options = {});
 
 /// Told when the next stage after reading begins.

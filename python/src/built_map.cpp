@@ -11,6 +11,7 @@
 #include "results/maps.hpp"
 #include "rows.hpp"
 #include "trussmap/build_map.hpp"
+#include "trussmap/check.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/texts.hpp"
 #include "trussmap/wording.hpp"

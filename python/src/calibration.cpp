@@ -7,6 +7,7 @@
 #include "results.hpp"
 #include "rows.hpp"
 #include "trussmap/calibrate.hpp"
+#include "trussmap/check.hpp"
 #include "trussmap/texts.hpp"
 
 #include <utility>

@@ -8,6 +8,7 @@
 #include "inputs.hpp"
 #include "parts.hpp"
 #include "rows.hpp"
+#include "trussmap/check.hpp"
 #include "trussmap/texts.hpp"
 
 #include <utility>

@@ -25,24 +25,11 @@ namespace trussmap::python {
 
 namespace py = pybind11;
 
-template <typename V>
-inline constexpr bool kIsText = std::is_convertible_v<V, std::string_view>;
-template <typename V>
-concept HasValue = requires(const V& value) {
-  value.has_value();
-};
-template <typename V>
-concept IsPair = requires(const V& value) {
-  value.second;
-};
-template <typename V>
-concept IsKeyed = requires(const V& value) {
-  value.values;
-};
-template <typename V>
-concept IsMap = requires {
-  typename V::mapped_type;
-};
+using results::IsKeyed;
+using results::IsMap;
+using results::IsPair;
+using results::IsText;
+using results::MayBeThere;
 
 template <typename V>
 [[nodiscard]] bool has_class() {
@@ -75,11 +62,11 @@ template <typename V>
     return has_class<V>() ? py::cast(value) : dict_of(value, results::kDescribed<V>);
   } else if constexpr (std::is_enum_v<V>) {
     return py::str(std::string(name_of(value)));
-  } else if constexpr (kIsText<V>) {
+  } else if constexpr (IsText<V>) {
     return py::str(std::string(value));
   } else if constexpr (std::is_arithmetic_v<V>) {
     return py::cast(value);
-  } else if constexpr (HasValue<V> || std::is_pointer_v<V>) {
+  } else if constexpr (MayBeThere<V> || std::is_pointer_v<V>) {
     return value ? to_python(*value) : py::object(py::none());
   } else if constexpr (IsPair<V>) {
     return py::make_tuple(to_python(value.first), to_python(value.second));
@@ -107,7 +94,7 @@ template <typename V>
   } else if constexpr (results::HasFields<V>) {
     return has_class<V>() ? std::string(py::str(py::type::of<V>().attr("__name__")))
                           : "dict[str, Any]";
-  } else if constexpr (std::is_enum_v<V> || kIsText<V>) {
+  } else if constexpr (std::is_enum_v<V> || IsText<V>) {
     return "str";
   } else if constexpr (std::is_same_v<V, bool>) {
     return "bool";
@@ -115,7 +102,7 @@ template <typename V>
     return "float";
   } else if constexpr (std::is_arithmetic_v<V>) {
     return "int";
-  } else if constexpr (HasValue<V>) {
+  } else if constexpr (MayBeThere<V>) {
     return "Optional[" + type_text<typename V::value_type>() + "]";
   } else if constexpr (std::is_pointer_v<V>) {
     return "Optional[" + type_text<std::remove_cv_t<std::remove_pointer_t<V>>>() + "]";
@@ -183,7 +170,7 @@ void add_fields(py::class_<Class>& type, const results::Described<Fields...>& li
           field_doc(one.about).c_str());
       note_attribute(type, name, [may_be_absent = one.form == results::Form::absent] {
         const std::string text = type_text<Value>();
-        return may_be_absent && !text.starts_with("Optional[") && HasValue<Value>
+        return may_be_absent && !text.starts_with("Optional[") && MayBeThere<Value>
                    ? "Optional[" + text + "]"
                    : text;
       });

@@ -3,6 +3,7 @@
 #include "inputs.hpp"
 
 #include "arrays.hpp"
+#include "trussmap/check.hpp"
 #include "trussmap/compare.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
@@ -134,7 +135,8 @@ std::vector<std::vector<TimeSpan>> excluded_of(py::handle exclude, std::size_t r
 Prepared prepared(const Given& given, const SessionOptions& use) {
   Read input = read(given);
   Prepared result;
-  result.session = std::make_shared<Session>(open_session(input.recordings, input.model, use));
+  result.session = std::make_shared<Session>(
+      open_session(with_wheels(input.recordings, input.model.robot), input.model, use));
   for (const CheckFinding& one :
        check_read_recordings(input.recordings, &input.model, input.model_name)) {
     result.mistakes.push_back(in_words(one));

@@ -101,10 +101,9 @@ void feed_signal(Gathering& g, const SignalMap& signal, Signal& into) {
   });
 }
 
-/// Of a message that has both, as nav_msgs/Odometry.
-void compare_twist(Gathering& g, const FedMessage& fed) {
+/// Of a message that has both, as nav_msgs/Odometry. `twist`: the message's.
+void compare_twist(Gathering& g, const FedMessage& fed, const std::optional<FieldTwist>& twist) {
   if (!fed.message.member("pose") || !fed.message.member("twist")) return;
-  const auto twist = twist_of(fed.message);
   const auto pose = pose_of(fed.message);
   if (twist && pose && pose->turned) g.to.beside.add(fed.t, *twist, *pose);
 }
@@ -114,7 +113,7 @@ void feed_twist(Gathering& g) {
   g.feeds.add({odometry.twist, odometry.file, odometry.line}, [&g](const FedMessage& fed) {
     const auto twist = twist_of(fed.field);
     if (twist) g.to.twists.push_back({fed.t + nanoseconds(g.map.odometry.clock), *twist});
-    compare_twist(g, fed);
+    compare_twist(g, fed, twist_of(fed.message));
     return twist.has_value();
   });
 }
@@ -173,7 +172,7 @@ void feed_pose(Gathering& g, const AskedField& asked, double clock,
     }
     if (const auto twist = odometry ? twist_of(fed.message) : std::nullopt) {
       g.to.twists_move = g.to.twists_move || twist->ahead != 0.0 || twist->turn != 0.0;
-      compare_twist(g, fed);
+      compare_twist(g, fed, twist);
     }
     into.push_back(
         {fed.t + nanoseconds(clock), pose->position.x(), pose->position.y(), pose->yaw()});

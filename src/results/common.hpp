@@ -27,6 +27,8 @@ inline constexpr const char* kOwnNotes = "what the command did with the data on 
 
 inline constexpr const char* kWhatChannel = "what it acts on: wheels, turn, compass, ...";
 inline constexpr const char* kWhatShape = "its formulas, one per coefficient";
+inline constexpr const char* kWhatBudget =
+    "what of dead reckoning's error by the wheels comes from which noise";
 inline constexpr const char* kInWords = "the same in a sentence";
 
 [[nodiscard]] inline std::vector<std::string> shape_texts(const Effect& effect) {
@@ -40,10 +42,6 @@ inline constexpr auto kDescribed<Effect> =
               field("shape", shape_texts, kWhatShape))
         .named("effect");
 
-[[nodiscard]] inline const std::vector<double>& coefficients_of(const Effect* effect) {
-  return effect->coefficients;
-}
-
 /// An effect with its size.
 struct SizedEffect {
   const Effect* effect = nullptr;
@@ -51,7 +49,7 @@ struct SizedEffect {
 template <>
 inline constexpr auto kDescribed<SizedEffect> =
     described(keys_of("effect", &SizedEffect::effect),
-              field("coefficients", through(&SizedEffect::effect, coefficients_of)));
+              field("coefficients", through(&SizedEffect::effect, &Effect::coefficients)));
 
 /// Likewise, with the standard error of its only coefficient.
 struct ConstantEffect {
@@ -61,7 +59,7 @@ struct ConstantEffect {
 template <>
 inline constexpr auto kDescribed<ConstantEffect> =
     described(keys_of("effect", &ConstantEffect::effect),
-              field("coefficients", through(&ConstantEffect::effect, coefficients_of)),
+              field("coefficients", through(&ConstantEffect::effect, &Effect::coefficients)),
               field("sd", [](const ConstantEffect& one) { return std::vector{one.sd}; }));
 
 template <>
@@ -201,8 +199,7 @@ inline constexpr auto kDescribed<NoiseBudget> =
               field("shares", &NoiseBudget::shares, "the largest first"),
               field(
                   "in_words", [](const NoiseBudget& one) { return in_words(one); }, kInWords))
-        .named("noise_budget",
-               "what of dead reckoning's error by the wheels comes from which noise");
+        .named("noise_budget", kWhatBudget);
 
 template <>
 inline constexpr auto kDescribed<RobotConstant> = described(

@@ -29,9 +29,6 @@ inline constexpr auto kDescribed<Reported<Report>> = described(
         [](const Reported<Report>& one) -> const std::vector<std::string>& { return *one.notes; },
         kOwnNotes));
 
-inline constexpr const char* kWhatBudget =
-    "what of dead reckoning's error by the wheels comes from which noise";
-
 // ----------------------------------------
 // compare.
 
@@ -253,12 +250,11 @@ struct Promised {
 };
 template <>
 inline constexpr auto kDescribed<Promised> = described(
-    field(
-        "chi2_decrease", [](const Promised& one) { return one.step->predicted_decrease; },
-        "that the diagnosis foretold"),
-    field(
-        "arrival_rms_m", [](const Promised& one) { return one.step->predicted.arrival_rms; },
-        "that it foretold, of held-out legs"));
+    field("chi2_decrease", through(&Promised::step, &DiscoveryStep::predicted_decrease),
+          "that the diagnosis foretold"),
+    field("arrival_rms_m",
+          through(&Promised::step, &DiscoveryStep::predicted, &HeldOutMetrics::arrival_rms),
+          "that it foretold, of held-out legs"));
 
 [[nodiscard]] inline std::optional<SizedEffect> added_in(const DiscoveryStep& step) {
   return step.added ? std::optional(SizedEffect{&*step.added}) : std::nullopt;

@@ -11,15 +11,15 @@
 //                 share("p_adjusted", &Outlier::p_adjusted, "Bonferroni, over all measurements"));
 //
 // A field is a member, a function of the whole, or described(...) again: an object of fields of the
-// whole. Names end in the unit; numbers without one are
-// counts, ratios or chi^2. A value can be a number, a truth value, a text, an enumerator that has a
-// name_of, a described struct, and a vector, array, pair, std::optional of, pointer to or text ->
-// value of these.
+// whole. Names end in the unit; numbers without one are counts, ratios or chi^2. A value can be a
+// number, a truth value, a text, an enumerator that has a name_of, a described struct, and a
+// vector, array, pair, std::optional of, pointer to or text -> value of these.
 #pragma once
 
 #include <functional>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -85,7 +85,8 @@ template <typename Get>
 
 template <typename First, typename... Rest>
 struct Through;
-/// A member of a member, and so on: members and functions, the first one of the whole.
+/// A member of a member, and so on: members and functions, the first one of the whole. Pointers are
+/// followed.
 template <typename First, typename... Rest>
 [[nodiscard]] constexpr Through<First, Rest...> through(First first, Rest... rest);
 
@@ -109,7 +110,11 @@ struct Through {
     } else {
       return std::apply(
           [&](const auto&... one) -> decltype(auto) {
-            return through(one...)(std::invoke(first, whole));
+            if constexpr (std::is_pointer_v<std::remove_cvref_t<Part>>) {
+              return through(one...)(*std::invoke(first, whole));
+            } else {
+              return through(one...)(std::invoke(first, whole));
+            }
           },
           rest);
     }
@@ -152,20 +157,31 @@ template <typename... Parts>
   return detail::of_tuple(std::tuple_cat(detail::as_tuple(parts)...));
 }
 
-/// A value and its standard error, which `of_value` and `of_error` are.
-template <typename Value, typename Error>
-[[nodiscard]] constexpr auto with_error(const char* name, const char* error_name, Value of_value,
-                                        Error of_error, const char* about) {
-  return std::tuple(field(name, of_value, about).or_null(),
-                    field(error_name, of_error, "its standard error").or_null());
-}
-
 struct NotDescribed {};
 
 /// A struct's fields: specialised beside what describes it.
 template <typename T>
 inline constexpr NotDescribed kDescribed;
 
+// Kinds of values, beside numbers and enumerators.
+template <typename T>
+concept IsText = std::is_convertible_v<T, std::string_view>;
+template <typename T>
+concept MayBeThere = requires(const T& value) {
+  value.has_value();
+};
+template <typename T>
+concept IsPair = requires(const T& value) {
+  value.second;
+};
+template <typename T>
+concept IsKeyed = requires(const T& value) {
+  value.values;
+};
+template <typename T>
+concept IsMap = requires {
+  typename T::mapped_type;
+};
 template <typename T>
 concept HasFields = !std::is_same_v<std::remove_const_t<decltype(kDescribed<T>)>, NotDescribed>;
 

@@ -6,13 +6,8 @@
 
 #include "results/described.hpp"
 
-#include <array>
 #include <cmath>
-#include <map>
-#include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -28,7 +23,7 @@ namespace detail {
 // Whether there is anything: what Form::absent asks.
 template <typename T>
 [[nodiscard]] bool is_there(const T& value) {
-  if constexpr (requires { value.has_value(); }) {
+  if constexpr (MayBeThere<T>) {
     return value.has_value();
   } else if constexpr (requires { value.empty(); }) {
     return !value.empty();
@@ -83,17 +78,17 @@ template <typename T>
     return null && !std::isfinite(value) ? Json() : Json(value);
   } else if constexpr (std::is_enum_v<T>) {
     return std::string(name_of(value));
-  } else if constexpr (std::is_arithmetic_v<T> || std::is_convertible_v<T, std::string_view>) {
+  } else if constexpr (std::is_arithmetic_v<T> || IsText<T>) {
     return value;
-  } else if constexpr (std::is_pointer_v<T> || requires { value.has_value(); }) {
+  } else if constexpr (std::is_pointer_v<T> || MayBeThere<T>) {
     return is_there(value) ? value_json(*value, null) : Json();
-  } else if constexpr (requires { value.second; }) {
+  } else if constexpr (IsPair<T>) {
     return Json::array({json_of(value.first), json_of(value.second)});
-  } else if constexpr (requires { value.values; }) {
+  } else if constexpr (IsKeyed<T>) {
     Json object = Json::object();
     for (const auto& [key, one] : value.values) object[key] = json_of(one);
     return object;
-  } else if constexpr (requires { typename T::mapped_type; }) {
+  } else if constexpr (IsMap<T>) {
     Json object = Json::object();
     for (const auto& [key, one] : value) object[key] = json_of(one);
     return object;

@@ -87,23 +87,20 @@ struct GrownTour {
   const TourErrors* errors = nullptr;
 };
 template <auto kMember>
-[[nodiscard]] auto of_tour(const GrownTour& one) {
-  return one.errors->errors.*kMember;
-}
+inline constexpr auto kOfTour = through(&GrownTour::errors, &TourErrors::errors, kMember);
 template <>
 inline constexpr auto kDescribed<GrownTour> =
     described(field("tour", &GrownTour::tour, "its number").at_least(1.0),
-              field("stretch_error", of_tour<&MapErrors::stretch>,
+              field("stretch_error", kOfTour<&MapErrors::stretch>,
                     "sigma: mean of |s - s_true|/s_true over the routes"),
-              field("orientation_error_rad", of_tour<&MapErrors::orientation>,
+              field("orientation_error_rad", kOfTour<&MapErrors::orientation>,
                     "rho: mean of |theta - theta_true| over the routes"),
-              field("position_error_m", of_tour<&MapErrors::position>,
+              field("position_error_m", kOfTour<&MapErrors::position>,
                     "mean distance of the landmarks from the truth")
                   .if_any(),
-              field("routes", of_tour<&MapErrors::routes>, "that were compared").at_least(0.0),
-              field(
-                  "complete", [](const GrownTour& one) { return one.errors->complete; },
-                  "false: the recording ended within the tour"));
+              field("routes", kOfTour<&MapErrors::routes>, "that were compared").at_least(0.0),
+              field("complete", through(&GrownTour::errors, &TourErrors::complete),
+                    "false: the recording ended within the tour"));
 
 [[nodiscard]] inline std::vector<GrownTour> grown_tours(const BuiltMap& built) {
   std::vector<GrownTour> tours;
@@ -195,7 +192,9 @@ template <auto kMember>
 inline constexpr auto kBuilt =
     [](const MapReport& one) -> decltype(auto) { return std::invoke(kMember, *one.built); };
 template <auto kMember>
-inline constexpr auto kFitted = [](const MapReport& one) { return one.built->fit.*kMember; };
+inline constexpr auto kOfMap = through(&MapReport::built, &BuiltMap::map, kMember);
+template <auto kMember>
+inline constexpr auto kFitted = through(&MapReport::built, &BuiltMap::fit, kMember);
 
 template <>
 inline constexpr auto kDescribed<MapReport> =
@@ -206,13 +205,8 @@ inline constexpr auto kDescribed<MapReport> =
             "doubtful where anything speaks against the map: see warnings")
             .one_of("good | doubtful"),
         field("legs", kBuilt<&BuiltMap::legs>, "drives between landmarks").at_least(0.0),
-        field(
-            "landmarks", [](const MapReport& one) { return one.built->map.landmarks(); },
-            "of the map")
-            .at_least(0.0),
-        field(
-            "routes", [](const MapReport& one) { return one.built->map.routes(); }, "of the map")
-            .at_least(0.0),
+        field("landmarks", kOfMap<&LandmarkGraph::landmarks>, "of the map").at_least(0.0),
+        field("routes", kOfMap<&LandmarkGraph::routes>, "of the map").at_least(0.0),
         field("first_sight", kBuilt<&BuiltMap::first_sight>, "loops closed").at_least(0.0),
         field("refinements", kBuilt<&BuiltMap::refinements>, "known routes driven again")
             .at_least(0.0),

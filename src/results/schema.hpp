@@ -7,7 +7,6 @@
 #include "results/json.hpp"
 
 #include <string_view>
-#include <vector>
 
 namespace trussmap::results {
 
@@ -42,22 +41,22 @@ class SchemaMaker {
       Json integer{{"type", "integer"}};
       if constexpr (std::is_unsigned_v<T>) integer["minimum"] = 0;
       return integer;
-    } else if constexpr (std::is_enum_v<T> || std::is_convertible_v<T, std::string_view>) {
+    } else if constexpr (std::is_enum_v<T> || IsText<T>) {
       return {{"type", "string"}};
     } else if constexpr (std::is_pointer_v<T>) {
       return or_null(schema_of<std::remove_cv_t<std::remove_pointer_t<T>>>(null));
-    } else if constexpr (requires(T value) { value.has_value(); }) {
+    } else if constexpr (MayBeThere<T>) {
       return or_null(schema_of<typename T::value_type>(null));
-    } else if constexpr (requires(T value) { value.second; }) {
+    } else if constexpr (IsPair<T>) {
       return {{"type", "array"},
               {"minItems", 2},
               {"maxItems", 2},
               {"items", schema_of<typename T::first_type>(null)}};
-    } else if constexpr (requires(T value) { value.values; }) {
+    } else if constexpr (IsKeyed<T>) {
       using Pair = typename decltype(T::values)::value_type;
       return {{"type", "object"},
               {"additionalProperties", schema_of<typename Pair::second_type>(null)}};
-    } else if constexpr (requires { typename T::mapped_type; }) {
+    } else if constexpr (IsMap<T>) {
       return {{"type", "object"},
               {"additionalProperties", schema_of<typename T::mapped_type>(null)}};
     } else {
@@ -127,8 +126,7 @@ class SchemaMaker {
   struct There {
     using type = Value;
   };
-  template <typename Value>
-  requires requires(Value value) { value.has_value(); }
+  template <MayBeThere Value>
   struct There<Value> {
     using type = typename Value::value_type;
   };
@@ -141,10 +139,7 @@ class SchemaMaker {
 
   template <typename Value>
   [[nodiscard]] static constexpr bool is_nullable() {
-    return (std::is_pointer_v<Value> && !std::is_convertible_v<Value, std::string_view>) ||
-           requires(Value value) {
-      value.has_value();
-    };
+    return (std::is_pointer_v<Value> && !IsText<Value>) || MayBeThere<Value>;
   }
 
   /// Keys of one that has a name are referred to, else they stand among the object's own.

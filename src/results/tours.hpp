@@ -66,9 +66,8 @@ inline constexpr auto kDescribed<TourReport> = described(
           "errors of positions are after the best rotation and translation"),
     field("tours", numbered),
     field("first_sight",
-          described(
-              field("before", [](const TourReport& one) { return one.result->first_sight_before; }),
-              field("after", [](const TourReport& one) { return one.result->first_sight_after; })),
+          described(field("before", through(&TourReport::result, &TourResult::first_sight_before)),
+                    field("after", through(&TourReport::result, &TourResult::first_sight_after))),
           "the first loop's correction"));
 
 }  // namespace trussmap::results

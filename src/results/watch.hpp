@@ -46,13 +46,11 @@ struct FirstAlarm {
   double t = 0.0;  ///< s
 };
 template <>
-inline constexpr auto kDescribed<FirstAlarm> =
-    described(field(
-                  "leg", [](const FirstAlarm& one) { return one.report->legs; },
-                  "at the end of which it came")
-                  .at_least(1.0),
-              field("t", &FirstAlarm::t, "s"),
-              field("found", [](const FirstAlarm& one) { return *one.report->found; }));
+inline constexpr auto kDescribed<FirstAlarm> = described(
+    field("leg", through(&FirstAlarm::report, &MonitorReport::legs), "at the end of which it came")
+        .at_least(1.0),
+    field("t", &FirstAlarm::t, "s"),
+    field("found", [](const FirstAlarm& one) { return *one.report->found; }));
 
 /// What watch says.
 struct WatchReport {
@@ -63,7 +61,7 @@ template <auto kMember>
 inline constexpr auto kWatched =
     [](const WatchReport& one) -> decltype(auto) { return std::invoke(kMember, *one.watch); };
 template <auto kMember>
-inline constexpr auto kLast = [](const WatchReport& one) { return one.watch->last.*kMember; };
+inline constexpr auto kLast = through(&WatchReport::watch, &Watch::last, kMember);
 
 template <>
 inline constexpr auto kDescribed<WatchReport> = described(

@@ -18,9 +18,9 @@ void begin(const NextStage& next) {
 }
 
 /// Times to leave out have to be times of the drive: a wrong unit must not be ignored in silence.
-void check_excluded(const std::vector<Recording>& recordings, const FitOptions& fit) {
+void check_excluded(const std::vector<DrivenRecording>& recordings, const FitOptions& fit) {
   for (std::size_t k = 0; k < fit.excluded.size() && k < recordings.size(); ++k) {
-    const Drive& drive = recordings[k].drive;
+    const MotionRows& drive = recordings[k].drive;
     if (drive.rows() == 0) continue;
     for (const TimeSpan& one : fit.excluded[k]) {
       if (one.from < drive.t.back() && one.to > drive.start()) continue;
@@ -68,11 +68,11 @@ DiagnoseOptions diagnose_options(const SessionOptions& options) {
   return how;
 }
 
-Session open_session(const std::vector<Recording>& recordings, Model model,
+Session open_session(std::vector<DrivenRecording> recordings, Model model,
                      const SessionOptions& options) {
   check_excluded(recordings, options.fit);
   PreparedRecordings rows =
-      prepare_recordings(with_wheels(recordings, model.robot), model, options.fit, options.every);
+      prepare_recordings(std::move(recordings), model, options.fit, options.every);
   return {std::move(rows), std::move(model), options};
 }
 

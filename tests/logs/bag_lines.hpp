@@ -20,6 +20,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 namespace trussmap::testing {
 
@@ -113,6 +114,16 @@ inline TestBag write_test_bag(const std::filesystem::path& folder, const std::st
   bag.path = path;
   bag.expected = content_of(folder / "expected.txt");
   return bag;
+}
+
+/// Every number to the bit, every time to the nanosecond, in the order of the file: at least so
+/// many bytes of lines.
+inline void expect_read_as_written(const TestBag& bag, std::size_t least) {
+  const ReadLog log = read_lines(bag.path);
+  EXPECT_EQ(log.error, "");
+  EXPECT_EQ(log.end.cut_off, "");
+  EXPECT_GT(bag.expected.size(), least);
+  EXPECT_TRUE(log.lines == bag.expected);
 }
 
 }  // namespace trussmap::testing

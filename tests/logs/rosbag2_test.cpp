@@ -30,12 +30,8 @@ TEST_P(Rosbag2Variants, AreReadAsWritten) {
   const fs::path temporary = scratch.path() / "temporary";
   fs::create_directories(temporary);
   ::setenv("TMPDIR", temporary.c_str(), 1);
-  const ReadLog log = testing::read_lines(bag.path);
+  testing::expect_read_as_written(bag, 1000U);
   ::unsetenv("TMPDIR");
-  EXPECT_EQ(log.error, "");
-  EXPECT_EQ(log.end.cut_off, "");
-  EXPECT_GT(bag.expected.size(), 1000U);
-  EXPECT_TRUE(log.lines == bag.expected);
   EXPECT_TRUE(fs::is_empty(temporary));
 }
 

@@ -194,14 +194,19 @@ def mcap(folder, *, definitions=True, standard=False, topics=None, **options):
     return path, bag.flat()
 
 
-def small(folder, **options):
-    """Small enough to be cut off and changed everywhere."""
-    bag = BagWriter()
-    bag.topic("/odom", "nav_msgs/msg/Odometry")
-    bag.topic("/chatter", "std_msgs/msg/String")
+def write_little(bag, odometry, string):
+    """Two topics of these types, eight messages each."""
+    bag.topic("/odom", odometry)
+    bag.topic("/chatter", string)
     for k in range(8):
         bag.write("/odom", START + k, ros.odometry(START, 0.1 * k, 0.2 * k, 0.3 * k))
         bag.write("/chatter", START + k, ros.string("word " * k))
+
+
+def small(folder, **options):
+    """Small enough to be cut off and changed everywhere."""
+    bag = BagWriter()
+    write_little(bag, "nav_msgs/msg/Odometry", "std_msgs/msg/String")
     path = os.path.join(folder, "bag.mcap")
     bag.write_mcap(path, chunk_size=1600, **options)
     return path, bag.flat()
@@ -279,11 +284,7 @@ def drive(folder, of_ros1):
 def ros1_small(folder, **options):
     """Small enough to be cut off and changed everywhere."""
     bag = Ros1Bag()
-    bag.topic("/odom", "nav_msgs/Odometry")
-    bag.topic("/chatter", "std_msgs/String")
-    for k in range(8):
-        bag.write("/odom", START + k, ros.odometry(START, 0.1 * k, 0.2 * k, 0.3 * k))
-        bag.write("/chatter", START + k, ros.string("word " * k))
+    write_little(bag, "nav_msgs/Odometry", "std_msgs/String")
     path = os.path.join(folder, "bag.bag")
     bag.write_bag(path, chunk_size=1600, **options)
     return path, bag.flat(log_times_alone=True)
