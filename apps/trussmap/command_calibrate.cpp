@@ -142,6 +142,13 @@ void setup_calibrate(const Command& app) {
       .delimiter(',')
       .check(one_of({"survey", "truth", "fixes"}))
       .type_name("WHAT,...");
+  command
+      .add_option("--gate", options->calibration.gate,
+                  "Leave the few sightings, fixes and loops out that all others contradict by more "
+                  "standard deviations than this, where the rest fit far better (0: leave none "
+                  "out)")
+      .check(zero_or_more())
+      .capture_default_str();
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
   command.footer(

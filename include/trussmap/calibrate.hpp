@@ -40,6 +40,7 @@
 #pragma once
 
 #include "trussmap/fit_model.hpp"
+#include "trussmap/gate.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
 #include "trussmap/umbmark.hpp"
@@ -60,6 +61,9 @@ struct CalibrationOptions {
   bool noise = true;     ///< estimate k_L and k_R as well
   double holdout = 0.3;  ///< share of the legs that validate_calibration holds out; 0: none
   double leg = 1.0;      ///< m of driven path, length of such a leg
+  /// Standard deviations by which a sighting, fix or loop contradicts all others and is left out,
+  /// where these fit far better without the few that do; 0: none is.
+  double gate = kModelGate;
 };
 
 /// An estimate and its standard error.
@@ -127,6 +131,8 @@ struct WheelCalibration {
   Eigen::VectorXd g = {};
   Eigen::MatrixXd covariance = {};
   std::vector<std::string> undetermined;  ///< what was not determined, and why
+  /// Sightings, fixes and loops that contradict all others; nothing is made of them.
+  std::vector<std::string> left_out = {};
 };
 
 /// Effects of `model` other than the three are taken out of the recordings first. Throws SolveError

@@ -45,9 +45,11 @@ CalibrationOptions options_of(const std::vector<std::string>& without, double ho
 
 CalibrationResult run_calibrate(const py::object& recordings, const py::object& model,
                                 const py::object& test, const std::vector<std::string>& without,
-                                double holdout, double leg, const py::object& progress) {
+                                double holdout, double leg, double gate,
+                                const py::object& progress) {
   const Given given = python::given(recordings, model);
-  const CalibrationOptions how = options_of(without, holdout, leg);
+  CalibrationOptions how = options_of(without, holdout, leg);
+  how.gate = gate;
   std::optional<Given> kept;
   if (!test.is_none() && !(py::isinstance<py::sequence>(test) && py::len(test) == 0)) {
     kept = python::given(test, model);
@@ -180,6 +182,9 @@ void add_calibration(py::module_& module) {
           "undetermined", [](const CalibrationResult& self) { return self.found.undetermined; },
           doc("WheelCalibration.undetermined"))
       .def_property_readonly(
+          "left_out", [](const CalibrationResult& self) { return self.found.left_out; },
+          doc("WheelCalibration.left_out"))
+      .def_property_readonly(
           "arrival_rms", [](const CalibrationResult& self) { return self.held.calibrated.rms(); },
           "m, of held-out legs; 0 without legs.")
       .def_property_readonly(
@@ -193,7 +198,8 @@ void add_calibration(py::module_& module) {
   module.def("calibrate", run_calibrate, py::arg("recordings"), py::arg("model"), py::kw_only(),
              py::arg("test") = py::tuple(), py::arg("without") = std::vector<std::string>(),
              py::arg("holdout") = CalibrationOptions().holdout,
-             py::arg("leg") = CalibrationOptions().leg, py::arg("progress") = py::none(),
+             py::arg("leg") = CalibrationOptions().leg, py::arg("gate") = CalibrationOptions().gate,
+             py::arg("progress") = py::none(),
              doc("Wheels, wheelbase and wheel noise from recordings with truth or survey; `test`: "
                  "recordings to test the calibration on.",
                  "calibrate_wheels")

@@ -9,12 +9,13 @@
 #include "calibration/sensor_places.hpp"
 #include "calibration/sought_constants.hpp"
 #include "drive/steered_motion.hpp"
-#include "drive/well_formed.hpp"
 #include "effects/steering.hpp"
 #include "estimation/recording_adjustment.hpp"
 #include "fit/effect_columns.hpp"
+#include "geometry/index.hpp"
 #include "odometry/effect_correction.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/gate.hpp"
 
 #include <algorithm>
 #include <array>
@@ -112,7 +113,10 @@ Fitted fit(const std::vector<DrivenRecording>& recordings, const Model& model, c
   result.parameters = parameters_of(wanted, result.corrected, model.robot, options, references);
   if (has_steering(model.robot)) scale_steering(in_force(model), wanted, model.robot, result);
   result.problem = make_problem(result.corrected, model, options.problem);
-  result.adjustment = adjust(result.problem, result.parameters);
+  RecordingAdjustmentOptions how;
+  how.gate = options.gate;
+  how.most_left_out = kMostLeftOut;
+  result.adjustment = adjust(result.problem, result.parameters, how);
   return result;
 }
 
@@ -276,25 +280,6 @@ void require_positive(const std::vector<double>& g, const Wanted& wanted,
   }
 }
 
-}  // namespace
-
-WheelCalibrationOptions calibration_options(const CalibrationOptions& options) {
-  WheelCalibrationOptions result;
-  result.problem.survey = options.survey;
-  result.problem.truth = options.truth;
-  result.problem.fixes = options.fixes;
-  result.noise = options.noise;
-  return result;
-}
-
-WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
-                                  const Model& model, const CalibrationOptions& options) {
-  require_well_formed(recordings);
-  return calibrate_wheels(recordings, model, calibration_options(options));
-}
-
-namespace {
-
 /// What the last fit says of the references.
 ReferenceAlignment alignment_by(const Fitted& last, Eigen::Index geometry,
                                 const std::vector<DrivenRecording>& recordings, const Robot& robot,
@@ -331,11 +316,21 @@ ReferencesUsed told_in(const std::vector<DrivenRecording>& recordings, const Mod
   return used;
 }
 
+std::vector<LeftOutRow> left_out_by(const Fitted& last) {
+  std::vector<LeftOutRow> rows;
+  for (const int k : last.adjustment.left_out) {
+    const Measurement& one = last.problem.measurements[idx(k)];
+    rows.push_back(
+        {one.kind->facts().stream, one.session, one.source, describe(last.problem, one)});
+  }
+  return rows;
+}
+
 }  // namespace
 
-WheelCalibration calibrated_from(std::vector<double> g,
-                                 const std::vector<DrivenRecording>& recordings, const Model& model,
-                                 const WheelCalibrationOptions& options) {
+CalibrationByParts calibrated_by_parts(std::vector<double> g,
+                                       const std::vector<DrivenRecording>& recordings,
+                                       const Model& model, const WheelCalibrationOptions& options) {
   constexpr int kRounds = 8;
   constexpr double kSettled = 1e-10;
   WheelCalibration result;
@@ -373,55 +368,13 @@ WheelCalibration calibrated_from(std::vector<double> g,
   result.mountings = std::move(references.found.mountings);
   read_constants(result, g, wanted, last.adjustment);
   result.settled = stands_still(last.adjustment, geometry);
-  return result;
+  return {std::move(result), left_out_by(last)};
 }
 
-namespace {
-
-/// A start, and what it leads to under the stated noise.
-struct Led {
-  std::vector<double> start;
-  WheelCalibration found;
-};
-
-/// Of the starts the one that leads to the least chi^2; the first that leads to a possible one is
-/// good enough.
-std::optional<Led> leading(const std::vector<std::vector<double>>& starts,
-                           const std::vector<DrivenRecording>& recordings, const Model& model,
-                           WheelCalibrationOptions options) {
-  constexpr double kPossible = 10.0;  // chi^2/dof
-  options.noise = false;
-  std::optional<Led> best;
-  for (const std::vector<double>& start : starts) {
-    try {
-      WheelCalibration found = calibrated_from(start, recordings, model, options);
-      if (!found.settled || (best && found.chi2 >= best->found.chi2)) continue;
-      best = Led{start, std::move(found)};
-      if (best->found.chi2 < kPossible * std::max(1, best->found.dof)) break;
-    } catch (const SolveError&) {
-      continue;
-    }
-  }
-  return best;
-}
-
-/// From the stated constants, but where they are wrong by a factor.
-WheelCalibration calibrated(const std::vector<DrivenRecording>& recordings, const Model& model,
-                            const WheelCalibrationOptions& options) {
-  const std::vector<std::vector<double>> starts = likely_starts(recordings, model, options);
-  std::optional<Led> led;
-  if (starts.size() > 1) led = leading(starts, recordings, model, options);
-  if (led && !options.noise) return std::move(led->found);
-  return calibrated_from(led ? led->start : in_force(model), recordings, model, options);
-}
-
-}  // namespace
-
-WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
-                                  const Model& given, const WheelCalibrationOptions& options) {
-  const Model model = with_places_in_robot(given);
-  if (place_of_gain(model.robot)) return calibrate_steered(recordings, model, options);
-  return calibrated(recordings, model, options);
+WheelCalibration calibrated_from(std::vector<double> g,
+                                 const std::vector<DrivenRecording>& recordings, const Model& model,
+                                 const WheelCalibrationOptions& options) {
+  return calibrated_by_parts(std::move(g), recordings, model, options).found;
 }
 
 }  // namespace trussmap

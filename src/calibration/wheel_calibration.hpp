@@ -4,9 +4,13 @@
 // Calibration of the wheels (trussmap/calibrate.hpp) from parts of recordings.
 #pragma once
 
+#include "estimation/measurement_kind.hpp"
 #include "estimation/recording_problem.hpp"
 #include "trussmap/calibrate.hpp"
 
+#include <cstddef>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace trussmap {
@@ -17,6 +21,9 @@ struct WheelCalibrationOptions {
   /// Of each recording, where several are segments of one drive; empty: each is its own.
   std::vector<int> sessions;
   std::vector<Channel> seldom = {};  ///< of seldom_constants those that are sought
+  /// Squared standard deviations beyond which a sighting, fix or loop that the others contradict is
+  /// left out of a fit, as long as these are few (gate.hpp); none: all stay.
+  std::optional<double> gate = std::nullopt;
 };
 
 [[nodiscard]] WheelCalibrationOptions calibration_options(const CalibrationOptions& options);
@@ -24,6 +31,24 @@ struct WheelCalibrationOptions {
 [[nodiscard]] WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
                                                 const Model& model,
                                                 const WheelCalibrationOptions& options);
+
+/// A row of a recording's stream.
+struct LeftOutRow {
+  RecordingStream stream = RecordingStream::sightings;
+  int session = 0;
+  std::size_t row = 0;
+  std::string text;  ///< what it says
+};
+
+/// A calibration, and what its gate left out.
+struct CalibrationByParts {
+  WheelCalibration found;
+  std::vector<LeftOutRow> left_out;
+};
+[[nodiscard]] CalibrationByParts calibrated_by_parts(std::vector<double> g,
+                                                     const std::vector<DrivenRecording>& recordings,
+                                                     const Model& model,
+                                                     const WheelCalibrationOptions& options);
 
 /// From these values of the constants (sought_constants.hpp) on, by least squares.
 [[nodiscard]] WheelCalibration calibrated_from(std::vector<double> g,

@@ -313,12 +313,18 @@ TurnAgreement check_recording(Checked& checked) {
                         !checked.wrong.contains("truth heading") &&
                         !checked.wrong.contains("truth x");
   const bool by_compass = turns.sign > 0 && !checked.wrong.contains("heading");
+  for (const char* column : {"left", "right", "t", "range", "bearing"}) {
+    if (checked.wrong.contains(column)) return turns;
+  }
+  const auto check_labels = [&checked, by_truth](const Track& by) {
+    check_two_places(checked, by, by_truth);
+    check_wrong_labels(checked, by, by_truth);
+  };
   if (by_truth || !by_compass) {
-    check_two_places(checked, track, by_truth);
+    check_labels(track);
   } else {
-    check_two_places(
-        checked, Track(recording.drive, checked.wheelbase, WheelMistake::none, Heading::of_compass),
-        false);
+    check_labels(
+        Track(recording.drive, checked.wheelbase, WheelMistake::none, Heading::of_compass));
   }
   return turns;
 }

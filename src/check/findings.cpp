@@ -105,6 +105,7 @@ const std::vector<std::string>& check_kinds() {
                                                   "blank in a name",
                                                   "names differ in case",
                                                   "one name at two places",
+                                                  "wrong label",
                                                   "rows twice",
                                                   "cut off",
                                                   "same session twice",

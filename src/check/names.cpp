@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "check/findings.hpp"
-#include "statistics/median.hpp"
+#include "check/visits.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -28,93 +28,11 @@ void check_blanks(Checked& checked, const char* file, const std::set<std::string
               "remove the blanks");
 }
 
-/// Where one landmark was.
-struct Visit {
-  double t = 0.0;    ///< s
-  double way = 0.0;  ///< m driven until then
-  Vector2 place = Vector2::Zero();
-  bool seen = false;  ///< from afar
-};
-using Visits = std::map<std::string_view, std::vector<Visit>>;
-
-constexpr double kPass = 1.0;         // m: sightings within it are one visit
-constexpr double kApart = 1.0;        // m, and
-constexpr double kApartShare = 0.05;  // of the way in between, and
-constexpr double kApartTimes = 6.0;   // as much as is usual
-constexpr double kBeyond = 1.5;       // times what is allowed
-constexpr double kNearer = 0.75;      // of the distance to the other place, and
-constexpr double kNear = 0.6;         // of that between the two
-constexpr double kShareOthers = 0.1;  // of the other landmarks
-constexpr std::size_t kFewestReturns = 8;
+constexpr double kNearer = 0.75;              // of the distance to the other place, and
+constexpr double kNear = 0.6;                 // of that between the two
+constexpr double kShareOthers = 0.1;          // of the other landmarks
 constexpr std::size_t kFewestAtEach = 2;      // visits: one may be a wrong sighting;
 constexpr std::size_t kFewestSeenAtEach = 3;  // from afar wrong sightings are more frequent
-
-/// Straight between two rows of truth, the nearest row just outside of them; nothing in gaps.
-std::optional<Pose> truth_at(const std::vector<TruthRow>& truth, double t) {
-  constexpr double kGap = 1.0;  // s
-  const auto after = std::lower_bound(truth.begin(), truth.end(), t,
-                                      [](const TruthRow& row, double at) { return row.t < at; });
-  if (after == truth.end() || after == truth.begin()) {
-    const TruthRow& end = after == truth.end() ? truth.back() : truth.front();
-    if (std::abs(end.t - t) > 0.5 * kGap) return std::nullopt;
-    return Pose{end.x, end.y, end.heading};
-  }
-  const TruthRow& a = *(after - 1);
-  const TruthRow& b = *after;
-  if (b.t - a.t > kGap) return std::nullopt;
-  const double share = (t - a.t) / (b.t - a.t);
-  return Pose{a.x + share * (b.x - a.x), a.y + share * (b.y - a.y),
-              a.heading + share * wrap_angle(b.heading - a.heading)};
-}
-
-Visits visits_of(const Checked& checked, const Track& track, bool by_truth) {
-  Visits visits;
-  for (const Sighting& one : checked.recording.sightings) {
-    if (!tells_place(one)) continue;
-    const double way = track.way_at(one.t);
-    std::vector<Visit>& own = visits[one.landmark];
-    // Twice in one frame is worth asking.
-    if (!own.empty() && way - own.back().way < kPass && one.t != own.back().t) continue;
-    std::optional<Pose> pose = track.at(one.t);
-    if (by_truth) pose = truth_at(checked.recording.truth, one.t);
-    if (pose)
-      own.push_back({one.t, way, place_seen(one, *pose, checked.angle_unit), !one.standing()});
-  }
-  return visits;
-}
-
-/// By how much returns to a landmark miss it, as medians.
-struct Usual {
-  bool known = false;
-  double share = 0.0;  ///< of the way
-  double off = 0.0;    ///< m, of what is seen from afar, the third of the returns that are soonest
-};
-
-Usual usual_of(const Visits& visits) {
-  struct Return {
-    double way;
-    double off;
-    bool seen;
-  };
-  std::vector<Return> returns;
-  for (const auto& [name, all] : visits) {
-    for (std::size_t k = 1; k < all.size(); ++k) {
-      if (all[k].t == all[k - 1].t) continue;
-      returns.push_back(
-          {all[k].way - all[k - 1].way, (all[k].place - all[k - 1].place).norm(), all[k].seen});
-    }
-  }
-  if (returns.size() < kFewestReturns) return {};
-  std::sort(returns.begin(), returns.end(),
-            [](const Return& a, const Return& b) { return a.way < b.way; });
-  std::vector<double> shares;
-  std::vector<double> offs;
-  for (std::size_t k = 0; k < returns.size(); ++k) {
-    shares.push_back(returns[k].off / returns[k].way);
-    if (3 * k <= returns.size() && returns[k].seen) offs.push_back(returns[k].off);
-  }
-  return {true, median(std::move(shares)), offs.empty() ? 0.0 : median(std::move(offs))};
-}
 
 /// How many visits are at each of two places; 0 of what is at one.
 struct Split {
@@ -129,17 +47,13 @@ struct Split {
   }
 };
 
-/// Places may be off by so much, or such a share of the way. About the two neighbours in time that
-/// lie farthest beyond that.
-Split split_of(const std::vector<Visit>& visits, double off, double share) {
-  const auto allowed = [off, share](const Visit& a, const Visit& b) {
-    return std::max(off, share * std::abs(b.way - a.way));
-  };
+/// About the two neighbours in time that lie farthest beyond what is usual.
+Split split_of(const std::vector<Visit>& visits, const UsualMiss& usual) {
   std::size_t at = 0;
-  double most = kBeyond;
+  double most = kOtherPlace;
   for (std::size_t k = 1; k < visits.size(); ++k) {
     const double beyond =
-        (visits[k].place - visits[k - 1].place).norm() / allowed(visits[k - 1], visits[k]);
+        (visits[k].place - visits[k - 1].place).norm() / usual.allowed(visits[k - 1], visits[k]);
     if (beyond <= most) continue;
     most = beyond;
     at = k;
@@ -175,17 +89,13 @@ void check_names(Checked& checked) {
 }
 
 void check_two_places(Checked& checked, const Track& track, bool by_truth) {
-  for (const char* column : {"left", "right", "t", "range", "bearing"}) {
-    if (checked.wrong.contains(column)) return;
-  }
-  const Visits visits = visits_of(checked, track, by_truth);
-  const Usual usual = usual_of(visits);
+  constexpr double kPass = 1.0;  // m
+  const Visits visits = visits_of(checked, track, by_truth, kPass);
+  const UsualMiss usual = usual_miss(visits, by_truth);
   if (!usual.known) return;
-  const double share = by_truth ? 0.0 : std::max(kApartShare, kApartTimes * usual.share);
-  const double off = std::max(kApart, kApartTimes * usual.off);
   std::map<std::string_view, Split> splits;
   for (const auto& [name, all] : visits) {
-    const Split split = split_of(all, off, share);
+    const Split split = split_of(all, usual);
     if (split.clear()) splits[name] = split;
   }
   const auto landmarks = static_cast<double>(visits.size());

@@ -88,6 +88,19 @@ std::string text(const FixAlignment& fixes) {
       1000.0 * fixes.ahead, 1000.0 * fixes.left, lateness(late));
 }
 
+/// A few of them by what they say.
+std::string left_out_text(const std::vector<std::string>& left_out) {
+  constexpr std::size_t kNamed = 5;
+  std::string out =
+      fmt::format("  {} measurement{} left out, for all others contradict {}:\n", left_out.size(),
+                  left_out.size() == 1 ? "" : "s", left_out.size() == 1 ? "it" : "them");
+  for (std::size_t k = 0; k < std::min(kNamed, left_out.size()); ++k) {
+    out += "    " + left_out[k] + "\n";
+  }
+  if (left_out.size() > kNamed) out += fmt::format("    and {} more\n", left_out.size() - kNamed);
+  return out;
+}
+
 std::string words_of(const CalibratedMounting& mounting) {
   return mounting.of == "tracked" ? "truth's point" : mounting.of;
 }
@@ -142,6 +155,9 @@ std::string calibration_text(const WheelCalibration& found, const CalibrationVal
         "  errors are {:.2g} times what the model's noise allows: it is stated too large, and so "
         "is the \u00b1\n",
         std::sqrt(dispersion));
+  }
+  if (!found.left_out.empty()) {
+    out += left_out_text(found.left_out);
   }
   if (!found.truth.clocks.empty()) out += text(found.truth);
   if (!found.fixes.late.empty()) out += text(found.fixes);

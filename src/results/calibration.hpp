@@ -213,7 +213,10 @@ inline constexpr auto kDescribed<WheelCalibration> = described(
         .if_any(),
     field("settled", &WheelCalibration::settled,
           "false: the recordings contradict wheels that differ in these figures alone"),
-    field("undetermined", &WheelCalibration::undetermined, "what was not determined, and why"));
+    field("undetermined", &WheelCalibration::undetermined, "what was not determined, and why"),
+    field("left_out", &WheelCalibration::left_out,
+          "sightings, fixes and loops that contradict all others; nothing is made of them")
+        .if_any());
 
 /// What calibrate says.
 struct CalibrationReport {

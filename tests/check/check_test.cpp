@@ -439,7 +439,9 @@ TEST(Check, NothingToTest) {
   EXPECT_EQ(findings[0].kind, "nothing to test");
 }
 
-TEST(Check, RealRobotsHaveNoFindingButTheExchangedLabelsOfOneSurvey) {
+/// Dataset 4, robot 1, reads 9 once where 15 is, 0.5 s before it reads 15 there; a map of all
+/// sightings leaves out this one alone.
+TEST(Check, RealRobotsHaveNoFindingButTheExchangedLabelsOfOneSurveyAndOneMisread) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");
   for (const int set : {1, 4, 6}) {
     for (const int robot : {1, 4}) {
@@ -447,6 +449,13 @@ TEST(Check, RealRobotsHaveNoFindingButTheExchangedLabelsOfOneSurvey) {
           "data/mrclam/MRCLAM_Dataset" + std::to_string(set) + "/Robot" + std::to_string(robot);
       const Dataset read = read_mrclam(testing::shared(prefix));
       const std::vector<CheckFinding> findings = check_recordings({read.recording}, &read.model);
+      if (set == 4 && robot == 1) {
+        ASSERT_EQ(findings.size(), 1U) << prefix << "\n" << text_of(findings);
+        EXPECT_EQ(findings[0].kind, "wrong label");
+        EXPECT_NE(findings[0].evidence.find("9 at t = 885.625 s"), std::string::npos);
+        EXPECT_NE(findings[0].evidence.find("where 15 is"), std::string::npos);
+        continue;
+      }
       if (set != 1) {
         EXPECT_TRUE(findings.empty()) << prefix << "\n" << text_of(findings);
         continue;
