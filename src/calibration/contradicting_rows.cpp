@@ -53,11 +53,18 @@ std::vector<LeftOutRow> contradicting_rows(const std::vector<DrivenRecording>& r
                                            const Model& model,
                                            const WheelCalibrationOptions& options,
                                            const std::optional<WheelCalibration>& by_all) {
+  constexpr double kGood = 2.0;  // chi^2/dof
+  constexpr std::size_t kMostStarts = 4;
+  constexpr int kRounds = 2;  // the constants are found by the rest alone
+  constexpr int kTries = 2;   // that leave none out: many would have to go
   std::vector<std::vector<double>> starts = likely_starts(recordings, model, options);
   if (by_all) starts.insert(starts.begin(), in_force(by_all->model));
+  if (starts.size() > kMostStarts) {  // the stated constants are the last
+    starts.erase(starts.begin() + kMostStarts - 1, starts.end() - 1);
+  }
   WheelCalibrationOptions how = options;
   how.noise = false;
-  constexpr int kTries = 2;  // that leave none out: many would have to go
+  how.rounds = kRounds;
   std::vector<LeftOutRow> rows;
   std::optional<double> least;
   int without = 0;
@@ -66,10 +73,10 @@ std::vector<LeftOutRow> contradicting_rows(const std::vector<DrivenRecording>& r
       CalibrationByParts one = calibrated_by_parts(start, recordings, model, how);
       const double cost = one.found.chi2 + *how.gate * static_cast<double>(one.left_out.size());
       if (one.left_out.empty() && ++without == kTries) break;
-      if (!one.found.settled || (least && cost >= *least)) continue;
+      if (least && cost >= *least) continue;
       least = cost;
       rows = std::move(one.left_out);
-      if (!rows.empty() && !is_contradicted(one.found)) break;
+      if (!rows.empty() && scatter_of(one.found) < kGood) break;
     } catch (const SolveError&) {
       continue;
     }

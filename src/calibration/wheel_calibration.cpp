@@ -331,7 +331,6 @@ std::vector<LeftOutRow> left_out_by(const Fitted& last) {
 CalibrationByParts calibrated_by_parts(std::vector<double> g,
                                        const std::vector<DrivenRecording>& recordings,
                                        const Model& model, const WheelCalibrationOptions& options) {
-  constexpr int kRounds = 8;
   constexpr double kSettled = 1e-10;
   WheelCalibration result;
   result.model = with_constants(model, g);
@@ -348,7 +347,7 @@ CalibrationByParts calibrated_by_parts(std::vector<double> g,
   // Noise weighs the measurements, so it is found between two fits of the geometry.
   Fitted last;
   for (const bool noise : {options.noise, false}) {
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < options.rounds; ++round) {
       last = fit(recordings, result.model, wanted, options, references);
       g = shortened(g, refined(g, wanted, model.robot, last.adjustment.coefficients), recordings,
                     result.model);

@@ -24,6 +24,7 @@ struct WheelCalibrationOptions {
   /// Squared standard deviations beyond which a sighting, fix or loop that the others contradict is
   /// left out of a fit, as long as these are few (gate.hpp); none: all stay.
   std::optional<double> gate = std::nullopt;
+  int rounds = 8;  ///< of least squares, at most
 };
 
 [[nodiscard]] WheelCalibrationOptions calibration_options(const CalibrationOptions& options);

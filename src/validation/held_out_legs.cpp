@@ -9,6 +9,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace trussmap {
@@ -26,6 +27,22 @@ std::set<std::size_t> passed_over(const std::vector<LegSpan>& legs,
 
 void hold_out_no(const std::set<std::size_t>& numbers, std::vector<LegSpan>& legs) {
   for (LegSpan& leg : legs) leg.held_out = leg.held_out && !numbers.contains(leg.number);
+}
+
+/// Which of the measurements those are that the fit leaves out.
+std::set<std::size_t> left_out_in(const RecordingProblem& problem, const FitState& fit) {
+  using Row = std::tuple<RecordingStream, int, std::size_t>;
+  const auto row_of = [](const Measurement& one) {
+    return Row(one.kind->facts().stream, one.session, one.source);
+  };
+  std::set<Row> rows;
+  for (const int k : fit.adjustment.left_out) rows.insert(row_of(fit.problem.measurements[idx(k)]));
+  std::set<std::size_t> result;
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    const Measurement& one = problem.measurements[k];
+    if (!is_driven(one) && rows.contains(row_of(one))) result.insert(k);
+  }
+  return result;
 }
 
 }  // namespace
@@ -91,6 +108,7 @@ HeldOutLegs::HeldOutLegs(const std::vector<DrivenRecording>& recordings, const F
   }
   const FitState training = fit_without(legs, recordings, fit, options);
   TrainedModel trained = trained_model(training, recordings, options.problem);
+  trained.left_out = left_out_in(trained.problem, fit);
   // Delays may have moved sightings, and so the ends of legs.
   std::vector<LegSpan> again = leg_spans(trained.recordings, trained.problem, leg_options);
   hold_out_no(unused, again);

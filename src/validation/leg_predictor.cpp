@@ -3,7 +3,9 @@
 #include "validation/leg_predictor.hpp"
 
 #include "estimation/measurement_rows.hpp"
+#include "trussmap/gate.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -130,12 +132,33 @@ void LegPredictor::run() {
         pose == 0 || problem_.poses[pose].session != problem_.poses[pose - 1].session;
     if (first) begin_session(pose);
     const PoseEvents& here = events_[pose];
-    for (const std::size_t k : here.views) steps_.push_back(filter_.see(k));
+    for (const std::size_t k : here.views) {
+      if (!trained_.left_out.contains(k)) steps_.push_back(filter_.see(k));
+    }
     for (const std::size_t k : starting_[problem_.pose_node(static_cast<int>(pose))]) {
       if (std::optional<PredictedLeg> leg = predicted(k)) predicted_.push_back(std::move(*leg));
     }
     if (here.segment >= 0) steps_.push_back(filter_.drive(idx(here.segment)));
   }
+  pass_over_misread();
+}
+
+void LegPredictor::pass_over_misread() {
+  const auto misread = std::ranges::count(predicted_, true, &PredictedLeg::misread);
+  // Of more it is the model that is wrong.
+  const auto legs = static_cast<double>(predicted_.size());
+  if (static_cast<double>(misread) > std::max(1.0, kMostLeftOut * legs)) return;
+  std::erase_if(predicted_, [](const PredictedLeg& leg) { return leg.misread; });
+}
+
+bool LegPredictor::is_misread(std::size_t measurement, const Vector2& seen_at) const {
+  constexpr double kNearer = 0.25;  // of how far its own landmark is
+  const Measurement& one = problem_.measurements[measurement];
+  if (one.to < 0 || !trained_.left_out.contains(measurement)) return false;
+  const double near = kNearer * (seen_at - true_place(one)).norm();
+  return std::ranges::any_of(trained_.state.landmarks, [&](const Vector2& place) {
+    return (seen_at - place).norm() < near;  // never where a place is not known
+  });
 }
 
 void LegPredictor::begin_session(std::size_t pose) {
@@ -182,6 +205,8 @@ std::optional<PredictedLeg> LegPredictor::predicted(std::size_t k) const {
   leg.prediction.t = legs_[k].time.to;
   leg.prediction.arrival_error = *end - target;
   leg.prediction.has_chord = leg.chord.norm() >= kLeastChord;  // not where the start is not known
+  if (trained_.left_out.contains(legs_[k].from)) leg.prediction.has_chord = false;
+  leg.misread = is_misread(legs_[k].to, *end);
   leg.from = end_of(legs_[k].from, filter_);
   leg.to = end_of(legs_[k].to, ahead);
   leg.prediction.expected_error = expected_error(leg.to, ahead);

@@ -3,12 +3,13 @@
 //
 // Sightings under another landmark's name: those that are named are wrong, most are named, and a
 // recording without any is not accused.
+#include "wrong_labels.hpp"
+
 #include "check/findings.hpp"
 #include "trussmap/check.hpp"
 #include "trussmap/simulated_recording.hpp"
 
 #include <algorithm>
-#include <random>
 #include <set>
 #include <string>
 #include <vector>
@@ -31,24 +32,14 @@ SimulatedRecording hall(std::uint64_t seed, bool compass) {
   return simulate(settings, {});
 }
 
-/// "L2_3 at t = 48.1 s", as a finding has it, of each sighting that now has another name.
-std::set<std::string> spoil(Recording& recording, double share, std::uint64_t seed) {
-  std::set<std::string> names;
-  for (const Sighting& one : recording.sightings) names.insert(one.landmark);
-  const std::vector<std::string> all(names.begin(), names.end());
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> uniform;
-  std::set<std::string> wrong;
-  for (Sighting& one : recording.sightings) {
-    if (uniform(random) >= share) continue;
-    const std::string right = one.landmark;
-    while (one.landmark == right) {
-      one.landmark =
-          all[static_cast<std::size_t>(uniform(random) * static_cast<double>(all.size()))];
-    }
-    wrong.insert(fmt::format("{} at t = {:g} s", one.landmark, one.t));
+/// "L2_3 at t = 48.1 s", as a finding has it, of each.
+std::vector<std::string> named_as(const Recording& recording, const std::set<std::size_t>& rows) {
+  std::vector<std::string> texts;
+  for (const std::size_t row : rows) {
+    const Sighting& one = recording.sightings[row];
+    texts.push_back(fmt::format("{} at t = {:g} s", one.landmark, one.t));
   }
-  return wrong;
+  return texts;
 }
 
 std::vector<CheckFinding> checked(const Recording& recording, const Model& model) {
@@ -68,7 +59,7 @@ TEST(WrongLabels, AreNamed) {
     const SimulatedRecording made = hall(seed, seed % 3 != 0);
     Recording recording = made.drive.recording;
     EXPECT_EQ(wrong_label_in(checked(recording, made.model)), nullptr) << seed;
-    const std::set<std::string> wrong = spoil(recording, 0.02, seed);
+    const std::set<std::size_t> wrong = testing::spoil_labels(recording, 0.02, seed);
     const std::vector<CheckFinding> findings = checked(recording, made.model);
     const CheckFinding* found = wrong_label_in(findings);
     ASSERT_NE(found, nullptr) << seed;
@@ -81,7 +72,8 @@ TEST(WrongLabels, AreNamed) {
       ++here;
     }
     std::size_t right = 0;
-    for (const std::string& one : wrong) right += found->evidence.find(one) != std::string::npos;
+    for (const std::string& one : named_as(recording, wrong))
+      right += found->evidence.find(one) != std::string::npos;
     EXPECT_EQ(here, right) << seed << ": " << found->evidence;
   }
   EXPECT_GT(static_cast<double>(named), 0.5 * static_cast<double>(spoilt));
