@@ -49,7 +49,7 @@ if(BUILD_SHARED_LIBS)  # brings what it needs
 else()  # their users link what they need
   install(FILES cmake/FindCholmod.cmake cmake/FindLz4.cmake DESTINATION ${config_dir})
   set(requires
-      "eigen3 lapack blas fmt muparser liblzma expat tomlplusplus sqlite3 liblz4 libzstd yaml-cpp")
+      "eigen3 lapack blas fmt muparser liblzma expat tomlplusplus sqlite3 liblz4 libzstd zlib yaml-cpp")
   set(libs "-ltrussmap_datasets -ltrussmap_logs -ltrussmap_store -ltrussmap -ltrussmap_map -lcholmod -lbz2 -pthread")
   set(map_requires "eigen3 lapack blas")
   set(map_libs "-ltrussmap_map -lcholmod -pthread")

@@ -16,6 +16,7 @@
 #include <lz4frame.h>
 #include <system_error>
 #include <vector>
+#include <zlib.h>
 #include <zstd.h>
 
 namespace trussmap {
@@ -37,6 +38,11 @@ struct Progress {
   bool at_end = false;  // of a frame
 };
 
+/// As much as these libraries count.
+unsigned at_most_a_gibibyte(std::size_t bytes) {
+  return static_cast<unsigned>(std::min<std::size_t>(bytes, std::size_t{1} << 30U));
+}
+
 /// Streams of bzip2, one after the other.
 class Bzip2Stream {
  public:
@@ -48,11 +54,8 @@ class Bzip2Stream {
   Progress step(std::string_view from, char* to, std::size_t room) {
     if (!open_ && BZ2_bzDecompressInit(&stream_, 0, 0) != BZ_OK) throw std::bad_alloc();
     open_ = true;
-    const auto least = [](std::size_t count) {
-      return static_cast<unsigned>(std::min<std::size_t>(count, std::size_t{1} << 30U));
-    };
-    const unsigned given = least(from.size());
-    const unsigned space = least(room);
+    const unsigned given = at_most_a_gibibyte(from.size());
+    const unsigned space = at_most_a_gibibyte(room);
     stream_.next_in = const_cast<char*>(from.data());  // read alone
     stream_.avail_in = given;
     stream_.next_out = to;
@@ -76,6 +79,38 @@ class Bzip2Stream {
 
   bz_stream stream_{};
   bool open_ = false;
+};
+
+/// One stream of zlib; what follows it is damage.
+class ZlibStream {
+ public:
+  ZlibStream() {
+    if (inflateInit(&stream_) != Z_OK) throw std::bad_alloc();
+  }
+  ~ZlibStream() { inflateEnd(&stream_); }
+  ZlibStream(const ZlibStream&) = delete;
+  ZlibStream& operator=(const ZlibStream&) = delete;
+
+  Progress step(std::string_view from, char* to, std::size_t room) {
+    if (at_end_) throw DecompressError("has bytes behind its zlib data");
+    const unsigned given = at_most_a_gibibyte(from.size());
+    const unsigned space = at_most_a_gibibyte(room);
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(from.data()));  // read alone
+    stream_.avail_in = given;
+    stream_.next_out = reinterpret_cast<Bytef*>(to);
+    stream_.avail_out = space;
+    const int status = inflate(&stream_, Z_NO_FLUSH);
+    if (status == Z_MEM_ERROR) throw std::bad_alloc();
+    if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) {
+      throw DecompressError("its zlib data are damaged");
+    }
+    at_end_ = status == Z_STREAM_END;
+    return {given - stream_.avail_in, space - stream_.avail_out, at_end_};
+  }
+
+ private:
+  z_stream stream_{};
+  bool at_end_ = false;
 };
 
 }  // namespace
@@ -180,6 +215,13 @@ std::string_view Decompressor::bzip2(std::string_view bytes, std::uint64_t size)
                          return stream.step(from, to, room);
                        }),
                  size);
+}
+
+std::string_view Decompressor::zlib_of_any_size(std::string_view bytes, std::uint64_t most) {
+  ZlibStream stream;
+  return grown(bytes, most, [&stream](std::string_view from, char* to, std::size_t room) {
+    return stream.step(from, to, room);
+  });
 }
 
 bool is_zstd(std::string_view bytes) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// What lz4 (frames), zstd and bzip2 have compressed, in as much memory as it truly needs: what a
-// file says of sizes is believed once the bytes are there.
+// What lz4 (frames), zstd, bzip2 and zlib have compressed, in as much memory as it truly needs:
+// what a file says of sizes is believed once the bytes are there.
 #pragma once
 
 #include <cstdint>
@@ -32,6 +32,7 @@ class Decompressor {
   [[nodiscard]] std::string_view lz4(std::string_view bytes, std::uint64_t size);
   [[nodiscard]] std::string_view zstd(std::string_view bytes, std::uint64_t size);
   [[nodiscard]] std::string_view bzip2(std::string_view bytes, std::uint64_t size);
+  [[nodiscard]] std::string_view zlib_of_any_size(std::string_view bytes, std::uint64_t most);
   [[nodiscard]] std::string_view zstd_of_any_size(std::string_view bytes, std::uint64_t most);
 
  private:

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "logs/joined_logs.hpp"
 
+#include "logs/mat_file.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
@@ -34,17 +35,29 @@ std::string tail_of(const fs::path& path, std::size_t parts) {
   return tail.generic_string();
 }
 
+/// A log, or the tables of a file that has several.
+void add_file(const fs::path& file, std::vector<fs::path>& logs) {
+  std::error_code ignored;
+  if (is_mat_file(file) && fs::is_regular_file(file, ignored)) {
+    const std::vector<fs::path> tables = mat_logs(file);
+    logs.insert(logs.end(), tables.begin(), tables.end());
+  } else {
+    logs.push_back(file);
+  }
+}
+
 void add_folder(const fs::path& folder, std::vector<fs::path>& logs) {
   std::vector<fs::path> found;
   for (const fs::directory_entry& one : fs::directory_iterator(folder)) {
     if (one.is_regular_file() && is_message_log(one.path())) found.push_back(one.path());
   }
   if (found.empty()) {
-    throw InputError(folder.string(), 0,
-                     "is a folder without logs, expected tables (.csv, .tsv, .txt) or bags in it");
+    throw InputError(
+        folder.string(), 0,
+        "is a folder without logs, expected tables (.csv, .tsv, .txt, .mat) or bags in it");
   }
   std::sort(found.begin(), found.end());
-  logs.insert(logs.end(), found.begin(), found.end());
+  for (const fs::path& one : found) add_file(one, logs);
 }
 
 }  // namespace
@@ -70,17 +83,17 @@ JoinedLogs::JoinedLogs(const std::vector<fs::path>& paths, GivenDefinitions defi
     if (fs::is_directory(one, ignored) && !is_message_log(one)) {
       add_folder(one, logs_);
     } else {
-      logs_.push_back(one);
+      add_file(one, logs_);
     }
   }
   if (logs_.empty()) throw InputError("", 0, "no log is given, expected one or more");
   for (std::size_t k = 0; k < logs_.size(); ++k) {
     for (std::size_t j = 0; j < k; ++j) {
-      if (fs::equivalent(logs_[j], logs_[k], ignored)) {
+      if (logs_[j] == logs_[k] || fs::equivalent(logs_[j], logs_[k], ignored)) {
         throw InputError(logs_[k].string(), 0, "is given twice, expected each log once");
       }
     }
-    tables_.push_back(is_csv_log(logs_[k]));
+    tables_.push_back(is_table_log(logs_[k]));
   }
   for (const fs::path& one : logs_) {
     std::size_t parts = 1;

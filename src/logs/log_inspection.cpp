@@ -208,7 +208,7 @@ LogSurvey survey_log(const std::filesystem::path& log, const GivenDefinitions& d
 }
 
 LogInspection inspect_log(const std::filesystem::path& log, const LogOptions& options) {
-  return inspect_one_log(log, given_definitions(options));
+  return inspect_logs({log}, options);
 }
 
 LogInspection inspect_one_log(const std::filesystem::path& log,

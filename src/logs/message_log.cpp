@@ -3,6 +3,7 @@
 #include "logs/message_log.hpp"
 
 #include "files/present.hpp"
+#include "logs/mat_file.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
@@ -17,13 +18,16 @@ struct Format {
   LogEnd (*read)(const fs::path&, const LogVisit&);
 };
 
-constexpr Format kFormats[] = {{&is_mcap, &read_mcap},
-                               {&is_rosbag2, &read_rosbag2},
-                               {&is_wpilog, &read_wpilog},
-                               {&is_roadrunner_log, &read_roadrunner_log},
-                               {&is_csv_log, &read_csv_log}};
+constexpr Format kFormats[] = {
+    {&is_mcap, &read_mcap},       {&is_rosbag2, &read_rosbag2},
+    {&is_wpilog, &read_wpilog},   {&is_roadrunner_log, &read_roadrunner_log},
+    {&is_mat_log, &read_mat_log}, {&is_csv_log, &read_csv_log}};
 
 }  // namespace
+
+bool is_table_log(const fs::path& path) {
+  return is_csv_log(path) || is_mat_log(path);
+}
 
 bool is_message_log(const fs::path& path) {
   for (const Format& one : kFormats) {
@@ -33,7 +37,7 @@ bool is_message_log(const fs::path& path) {
 }
 
 LogEnd read_message_log(const fs::path& path, const LogVisit& visit) {
-  if (!is_present(path)) {
+  if (!is_present(path) && !is_mat_log(path)) {
     throw InputError(path.string(), 0, "does not exist, expected a log");
   }
   for (const Format& one : kFormats) {
@@ -41,8 +45,8 @@ LogEnd read_message_log(const fs::path& path, const LogVisit& visit) {
   }
   throw InputError(path.string(), 0,
                    "is no log that can be read, expected an MCAP file, a rosbag2 (.db3 or its "
-                   "folder), a bag of ROS 1 (.bag), a .wpilog, a Road Runner .log or a table "
-                   "(.csv, .tsv, .txt)");
+                   "folder), a bag of ROS 1 (.bag), a .wpilog, a Road Runner .log, a table (.csv, "
+                   ".tsv, .txt) or a MATLAB file (.mat)");
 }
 
 void require_messages(const fs::path& path, const LogEnd& end) {

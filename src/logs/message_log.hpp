@@ -30,7 +30,7 @@ namespace trussmap {
 struct LogTopic {
   std::string name;      ///< empty of a table, which has but one
   std::string type;      ///< as the log has it: nav_msgs/msg/Odometry, double[], struct:Pose2d
-  std::string encoding;  ///< cdr, ros1, wpilog, road runner, csv
+  std::string encoding;  ///< cdr, ros1, wpilog, road runner, csv, mat
   std::string unread;    ///< why its messages cannot be read ("protobuf"); empty: they can
   /// Fields are named by the columns of a table, which may have any characters in them.
   bool table = false;
@@ -95,6 +95,9 @@ inline constexpr std::uint64_t kLargestChunk = std::uint64_t{256} << 20U;
 /// Whether the name ends in .csv, .tsv or .txt, or those with .xz.
 [[nodiscard]] bool is_csv_log(const std::filesystem::path& file);
 [[nodiscard]] LogEnd read_csv_log(const std::filesystem::path& file, const LogVisit& visit);
+
+/// Whether it is a table, which keeps its times in a column.
+[[nodiscard]] bool is_table_log(const std::filesystem::path& path);
 
 /// Whichever it is. Throws InputError where it is none.
 [[nodiscard]] bool is_message_log(const std::filesystem::path& path);

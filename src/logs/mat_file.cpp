@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "logs/mat_file.hpp"
+
+#include "io/mat_elements.hpp"
+#include "logs/decompress.hpp"
+#include "text/plain_text.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/write_files.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+constexpr int kDeepest = 16;                                 // structures within structures
+constexpr std::int32_t kMostColumns = 64;                    // of a matrix
+constexpr std::size_t kMostFields = 4096;                    // of a structure
+constexpr std::size_t kMostNumbers = std::size_t{1} << 27U;  // in all: 1 GiB
+
+/// A variable or a field, before its values.
+struct MatHead {
+  std::uint32_t type = 0;  ///< MATLAB's class
+  bool complex = false;
+  std::vector<std::int32_t> dimensions;
+  std::string name;
+
+  [[nodiscard]] bool is_numeric() const { return type >= 6 && type <= 15; }
+  [[nodiscard]] bool is_whole() const { return type >= 8; }
+  [[nodiscard]] bool is_structure() const { return type == 2; }
+  /// Of a matrix; 0 of what has more dimensions.
+  [[nodiscard]] std::size_t rows() const { return size(0); }
+  [[nodiscard]] std::size_t across() const { return size(1); }
+  [[nodiscard]] std::size_t elements() const { return rows() * across(); }
+
+ private:
+  [[nodiscard]] std::size_t size(std::size_t dimension) const {
+    return dimensions.size() == 2 ? static_cast<std::size_t>(dimensions[dimension]) : 0;
+  }
+};
+
+MatHead head_of(MatElements& parts) {
+  constexpr std::size_t kMostDimensions = 32;
+  MatHead head;
+  const MatElement flags = parts.next();
+  if (flags.type != kMatUint32 || flags.data.size() != 8) parts.fail("has no array flags");
+  const auto bits = mat_number<std::uint32_t>(flags.data, 0);
+  head.type = bits & 0xffU;
+  head.complex = (bits & kMatComplex) != 0;
+  if (head.type > 15) return head;  // an object: made otherwise
+  const MatElement dimensions = parts.next();
+  const std::size_t count = dimensions.data.size() / 4;
+  if (dimensions.type != kMatInt32 || count < 2 || count > kMostDimensions) {
+    parts.fail("has an array without dimensions");
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    head.dimensions.push_back(mat_number<std::int32_t>(dimensions.data, 4 * k));
+    if (head.dimensions.back() < 0) parts.fail("has an array with a negative size");
+  }
+  const MatElement name = parts.next();
+  if (name.type != kMatInt8 || !is_plain_text(name.data)) parts.fail("has an array without a name");
+  head.name = name.data;
+  return head;
+}
+
+/// Reads the variables one after the other.
+class Variables {
+ public:
+  explicit Variables(std::string file) : file_(std::move(file)) {}
+
+  void read(const MatElement& element) {
+    if (element.type == kMatCompressed) {
+      std::string bytes;
+      try {
+        bytes = decompressor_.zlib_of_any_size(element.data, kLargestChunk);
+      } catch (const DecompressError& error) {
+        throw InputError(file_, 0,
+                         "at byte " + std::to_string(element.begin) + ": " + error.what() +
+                             ", expected a variable");
+      }
+      MatElements within(bytes, element.begin, file_);
+      read_variable(within.next(), within);
+    } else {
+      MatElements at(element.data, element.begin, file_);
+      read_variable(element, at);
+    }
+  }
+
+  [[nodiscard]] MatFile finish() {
+    MatFile result;
+    for (auto& [key, columns] : tables_) {
+      if (columns.size() < 2) {
+        pass_over("variables of a length of their own", columns.size());
+        continue;
+      }
+      const auto& [structure, rows] = key;
+      const auto same = std::count_if(tables_.begin(), tables_.end(), [&key](const auto& one) {
+        return one.first.first == key.first && one.second.size() >= 2;
+      });
+      std::string name = structure;
+      if (name.empty() || same > 1) {
+        name += (name.empty() ? "" : " ") + std::to_string(rows) + " rows";
+      }
+      result.tables.push_back({std::move(name), std::move(columns)});
+    }
+    for (const auto& [what, number] : passed_over_) result.passed_over.push_back({number, what});
+    return result;
+  }
+
+ private:
+  void read_variable(const MatElement& element, const MatElements& where) {
+    if (element.type != kMatMatrix) where.fail("has an element that is no variable");
+    if (element.data.empty()) return;
+    MatElements parts(element.data, element.begin, file_);
+    const MatHead head = head_of(parts);
+    if (head.is_structure()) {
+      read_structure(head, parts, head.name, "", 1);
+    } else {
+      take(head, parts, "", head.name);
+    }
+  }
+
+  void read_structure(const MatHead& head, MatElements& parts, const std::string& table,
+                      const std::string& path, int depth) {
+    if (depth > kDeepest) parts.fail("has structures more than 16 deep");
+    const std::vector<std::string> names = field_names(parts);
+    const std::size_t count = head.elements();
+    if (names.empty() || count == 0) return;
+    if (count > kMostNumbers / names.size()) parts.fail("has a structure of too many fields");
+    std::vector<std::vector<double>> each(names.size());
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t f = 0; f < names.size(); ++f) {
+        const MatElement field = parts.next();
+        if (field.type != kMatMatrix) parts.fail("has a field that is no array");
+        const std::string name = path.empty() ? names[f] : path + "." + names[f];
+        if (count == 1) {
+          read_field(field, table, name, depth);
+        } else {
+          each[f].push_back(lone_number(field));
+        }
+      }
+    }
+    if (count == 1) return;
+    for (std::size_t f = 0; f < names.size(); ++f) {
+      const bool any = std::any_of(each[f].begin(), each[f].end(), [](double one) {
+        return one == one;  // no NaN
+      });
+      const std::string name = path.empty() ? names[f] : path + "." + names[f];
+      if (any) {
+        add(table, {name, std::move(each[f]), false});
+      } else {
+        pass_over("fields that hold no single numbers", 1);
+      }
+    }
+  }
+
+  std::vector<std::string> field_names(MatElements& parts) const {
+    const MatElement length = parts.next();
+    if (length.type != kMatInt32 || length.data.size() != 4) {
+      parts.fail("has a structure without names");
+    }
+    const auto each = mat_number<std::int32_t>(length.data, 0);
+    const MatElement all = parts.next();
+    if (all.type != kMatInt8 || each <= 0 ||
+        all.data.size() % static_cast<std::size_t>(each) != 0) {
+      parts.fail("has a structure without names");
+    }
+    std::vector<std::string> names;
+    for (std::size_t at = 0; at < all.data.size(); at += static_cast<std::size_t>(each)) {
+      const std::string_view one = all.data.substr(at, static_cast<std::size_t>(each));
+      names.emplace_back(one.substr(0, one.find('\0')));
+      if (names.back().empty() || !is_plain_text(names.back()) || names.size() > kMostFields) {
+        parts.fail("has a structure with a field without a name");
+      }
+    }
+    return names;
+  }
+
+  void read_field(const MatElement& field, const std::string& table, const std::string& name,
+                  int depth) {
+    if (field.data.empty()) return;
+    MatElements parts(field.data, field.begin, file_);
+    const MatHead head = head_of(parts);
+    if (head.is_structure()) {
+      read_structure(head, parts, table, name, depth + 1);
+    } else {
+      take(head, parts, table, name);
+    }
+  }
+
+  /// A field of one of several structures; NaN of all else.
+  double lone_number(const MatElement& field) {
+    constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+    if (field.data.empty()) return kNothing;
+    MatElements parts(field.data, field.begin, file_);
+    const MatHead head = head_of(parts);
+    if (!head.is_numeric() || head.complex || head.elements() != 1) return kNothing;
+    const std::optional<std::vector<double>> values = values_of(parts);
+    return values->size() == 1 ? values->front() : kNothing;
+  }
+
+  std::optional<std::vector<double>> values_of(MatElements& parts) {
+    const MatElement element = parts.next();
+    std::optional<std::vector<double>> values = mat_numbers(element.type, element.data);
+    if (!values) parts.fail("has values of an unknown type");
+    numbers_ += values->size();
+    if (numbers_ > kMostNumbers) parts.fail("has more than a thousand million bytes of numbers");
+    return values;
+  }
+
+  /// Of a matrix each column, or row where these are longer.
+  void take(const MatHead& head, MatElements& parts, const std::string& table,
+            const std::string& name) {
+    if (head.type > 15) return pass_over("objects (tables, timeseries, strings)", 1);
+    if (!head.is_numeric()) return pass_over("texts, cells or sparse matrices", 1);
+    if (head.complex) return pass_over("complex variables", 1);
+    if (head.dimensions.size() != 2) return pass_over("arrays of more than two dimensions", 1);
+    if (head.elements() <= 1) return pass_over("single numbers", head.elements());
+    const std::vector<double> values = *values_of(parts);
+    if (values.size() != head.elements()) parts.fail("has other numbers of values than it says");
+    const bool lying = head.across() > head.rows();
+    const std::size_t count = lying ? head.rows() : head.across();
+    const std::size_t length = lying ? head.across() : head.rows();
+    if (count > kMostColumns) return pass_over("matrices of more than 64 columns", 1);
+    for (std::size_t k = 0; k < count; ++k) {
+      MatColumn column{name, {}, head.is_whole()};
+      if (count > 1) {
+        const std::string number = std::to_string(k + 1);
+        column.name += lying ? "(" + number + ",:)" : "(:," + number + ")";
+      }
+      column.values.reserve(length);
+      for (std::size_t row = 0; row < length; ++row) {
+        column.values.push_back(values[lying ? row * count + k : k * length + row]);
+      }
+      add(table, std::move(column));
+    }
+  }
+
+  void add(const std::string& table, MatColumn column) {
+    std::vector<MatColumn>& columns = tables_[{table, column.values.size()}];
+    std::erase_if(columns, [&column](const MatColumn& one) { return one.name == column.name; });
+    columns.push_back(std::move(column));
+  }
+
+  void pass_over(const char* what, std::size_t number) {
+    if (number > 0) passed_over_[what] += number;
+  }
+
+  std::string file_;
+  Decompressor decompressor_;
+  std::map<std::pair<std::string, std::size_t>, std::vector<MatColumn>> tables_;
+  std::map<std::string, std::uint64_t> passed_over_;
+  std::size_t numbers_ = 0;
+};
+
+}  // namespace
+
+bool is_mat_file(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending == ".mat";
+}
+
+MatFile read_mat_file(const std::filesystem::path& file) {
+  const std::string bytes = read_file(file);
+  const std::string name = file.string();
+  require_mat_header(bytes, name);
+  Variables variables(name);
+  MatElements elements(std::string_view(bytes).substr(kMatHeader), kMatHeader, name);
+  while (!elements.ends()) variables.read(elements.next());
+  return variables.finish();
+}
+
+}  // namespace trussmap
