@@ -220,7 +220,8 @@ void setup_convert(const Command& app) {
           "--map", options->map,
           "IN is a log: MCAP, a rosbag2 (.db3 or its folder), a bag of ROS 1 (.bag), .wpilog, Road "
           "Runner's .log, "
-          "or a table (.csv, .tsv, .txt); FILE (map.toml) says which of its fields are what, and "
+          "or a table (.csv, .tsv, .txt, .mat); FILE (map.toml) says which of its fields are what, "
+          "and "
           "of several logs by file = \"NAME\" in which one they are. Of a "
           "recording to a bag: FILE is written, and reads the bag back")
       .type_name("FILE");

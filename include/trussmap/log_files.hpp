@@ -30,7 +30,8 @@ namespace trussmap {
 // In.
 
 /// Whether the path is a log that can be read: an .mcap, a .db3 or a rosbag2's folder, a .bag of
-/// ROS 1, a .wpilog, a Road Runner .log, or a table (.csv, .tsv, .txt, also with .xz).
+/// ROS 1, a .wpilog, a Road Runner .log, or a table (.csv, .tsv, .txt, also with .xz;
+/// .mat of MATLAB).
 [[nodiscard]] bool is_log(const std::filesystem::path& path);
 
 struct LogOptions {
