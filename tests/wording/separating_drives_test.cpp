@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap::remedies_test {
+namespace trussmap::separating_drives_test {
 namespace {
 
 constexpr const char* kApart =
@@ -63,4 +63,4 @@ TEST(SeparatingDrive, AsksNothingToVaryApartFromItself) {
 }
 
 }  // namespace
-}  // namespace trussmap::remedies_test
+}  // namespace trussmap::separating_drives_test
