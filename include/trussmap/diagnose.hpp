@@ -185,11 +185,11 @@ struct EffectChance {
   double probability = 0.0;
 };
 
-/// All sets of effects that explain what is missing about as well as the best: 6 units of log
-/// evidence behind it at most, odds of 400 to 1. Every single candidate, every pair and every
-/// triple was weighed, larger sets begun with the best (criticism/subset_search.hpp has the
-/// formulas): sizes equally likely on a logarithmic scale, each number of effects as likely as any
-/// other, look-alikes sharing one belief. Empty where nothing is missing.
+/// All sets of effects about as good as the best: 6 units of log evidence behind at most, odds of
+/// 400 to 1. Every candidate, pair and triple was weighed, larger sets begun with the best ones
+/// (criticism/subset_search.hpp): sizes equally likely on a logarithmic scale, numbers of effects
+/// by Poisson's law of mean 1, look-alikes sharing one belief. What only adds to a likelier set
+/// counts as that one. Empty where nothing is missing.
 struct Explanations {
   std::vector<EffectSet> sets;        ///< best first
   std::vector<EffectChance> effects;  ///< likeliest first, from 0.01 on

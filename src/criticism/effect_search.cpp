@@ -6,6 +6,7 @@
 #include "criticism/formula_search.hpp"
 #include "criticism/known_causes.hpp"
 #include "linalg/dense.hpp"
+#include "statistics/distributions.hpp"
 
 #include <algorithm>
 #include <map>
@@ -281,8 +282,27 @@ void EffectSearch::take_best_set(const FitState& ground, const ScoreTest& left) 
   if (best != found) take_all(best);
 }
 
-/// Nothing is significant by itself.
+void EffectSearch::propose(const std::vector<Effect>& effects) {
+  std::vector<std::size_t> places;
+  for (const Effect& effect : effects) {
+    const auto found = std::find_if(tested_.begin(), tested_.end(), [&](const Tested& one) {
+      return one.candidate.effect.name == effect.name && one.candidate.effect.shape == effect.shape;
+    });
+    if (found == tested_.end()) return;
+    places.push_back(static_cast<std::size_t>(found - tested_.begin()));
+  }
+  take_all(places);
+  std::stable_sort(
+      missing_.begin(), missing_.end(), [this](const MissingEffect& a, const MissingEffect& b) {
+        return plausible_evidence(tested_[a.tested]) > plausible_evidence(tested_[b.tested]);
+      });
+  estimate_jointly();
+}
+
+/// Nothing is significant by itself. What hides much leaves a chi^2 that is hardly small.
 void EffectSearch::take_masked() {
+  constexpr double kHides = 0.2;  // p
+  if (chi2_p_value(fit_.adjustment.chi2, fit_.adjustment.dof) > kHides) return;
   const MaskedSet masked =
       masked_set(tested_, {fit_, tests_, fit_.adjustment.dof, tried_, options_.level,
                            kSecondLevel * options_.level, kSecondShare, options_.most_missing});

@@ -57,7 +57,7 @@ class Explainer {
     for (const SetOfClasses& one : sets_) {
       const bool is_named = one.classes == named_classes_;
       const double behind = -std::log(one.weight / sets_.front().weight);
-      if (one.classes.empty() || (behind > kListedBehind && !is_named)) continue;
+      if (one.classes.empty()) continue;
       // Occam's window (Madigan & Raftery 1994): what only adds to a likelier set belongs to it.
       const auto within =
           std::find_if(listed_sets.begin(), listed_sets.end(), [&one](const SetOfClasses* other) {
@@ -69,6 +69,7 @@ class Explainer {
         result.sets[at].probability += one.weight / all;
         continue;
       }
+      if (behind > kListedBehind && !is_named) continue;
       listed_sets.push_back(&one);
       result.sets.push_back(listed(one, std::max(0.0, behind), one.weight / all, is_named));
     }
@@ -385,6 +386,31 @@ void allow_what_is_likely(Diagnosis& diagnosis) {
 }
 
 }  // namespace
+
+std::vector<Effect> likelier_than_named(const Explanations& explanations) {
+  if (explanations.sets.empty()) return {};
+  constexpr double kLikely = 0.5;
+  const auto chance_of = [&](const Effect& effect) {
+    for (const EffectChance& one : explanations.effects) {
+      if (one.effect.name == effect.name) return one.probability;
+    }
+    return 0.0;
+  };
+  const auto named = std::find_if(explanations.sets.begin(), explanations.sets.end(),
+                                  [](const EffectSet& one) { return one.named; });
+  if (named == explanations.sets.begin() || named == explanations.sets.end()) return {};
+  const bool doubtful =
+      std::any_of(named->effects.begin(), named->effects.end(),
+                  [&](const ExplainingEffect& one) { return chance_of(one.effect) < kLikely; });
+  if (named->behind <= kListedBehind && !doubtful) return {};
+  std::vector<Effect> likely;
+  for (const ExplainingEffect& one : explanations.sets.front().effects) {
+    if (chance_of(one.effect) < kLikely) continue;
+    likely.push_back(one.effect);
+    likely.back().coefficients.clear();
+  }
+  return likely;
+}
 
 void explain(Diagnosis& diagnosis, const SearchedEffects& searched, const ModelFit& fit,
              const std::optional<ModelFit>& with) {

@@ -18,11 +18,11 @@
 // evidence here does (tested_candidate.hpp); the third for sizes z_i > 3 standard deviations of
 // what is known of the channel.
 //
-// Prior of sets: each number of effects as likely as any other (Scott & Berger 2010: what many
-// candidates cost follows from that), sets of as many by the product of their classes' beliefs w_c;
-// members of a class of look-alikes share its belief, so that many names make nothing likelier:
+// Prior of sets: numbers of effects by Poisson's law of mean 1; of sets of as many by the product
+// of their classes' beliefs w_c, so that many candidates cost what they should (Scott & Berger
+// 2010); members of a class of look-alikes share its belief: many names make nothing likelier.
 //
-//   P(S) ~ prod w_c(i) share_i / e_k(w),   e_k: elementary symmetric polynomial of all classes
+//   P(S) ~ prod w_c(i) share_i / (k! e_k(w)),   e_k: elementary symmetric polynomial of all classes
 //
 // Triples: for each pair (i, j) the residual correlations h of all columns and the shares D that
 // the pair leaves of them cost a few operations a column. The chi^2 that k adds is h_k' D_k^-1 h_k,
@@ -52,7 +52,7 @@ struct BlockBelief {
 /// Classes of look-alikes and what is believed of all of them.
 struct SetBelief {
   std::vector<BlockBelief> blocks;
-  std::vector<double> log_sets;  ///< log e_k(w), k = 0, 1, ...
+  std::vector<double> log_sets;  ///< log (k! e_k(w)), k = 0, 1, ...
 };
 
 inline constexpr std::size_t kMostInSet = 6;

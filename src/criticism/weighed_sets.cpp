@@ -99,6 +99,10 @@ SetBelief belief_in(const CandidateGram& gram, const std::vector<Tested>& tested
     belief.blocks.push_back(block);
   }
   belief.log_sets = log_symmetric(largest, static_cast<std::size_t>(most));
+  // Numbers of effects by Poisson's law of mean 1.
+  for (std::size_t k = 0; k < belief.log_sets.size(); ++k) {
+    belief.log_sets[k] += std::lgamma(static_cast<double>(k) + 1.0);
+  }
   return belief;
 }
 

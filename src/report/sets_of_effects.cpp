@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kMostSets = 4;     // in the text
 constexpr std::size_t kMostRows = 20;    // in the table
 constexpr std::size_t kMostChances = 6;  // in a line
+constexpr double kLeastSaid = 0.05;      // probability
 constexpr std::size_t kMostLikeIt = 2;   // names
 
 /// Never certain: nothing but what was tried was weighed.
@@ -48,15 +49,12 @@ std::string set_in_words(const EffectSet& set) {
 std::string chances_in_words(const Explanations& explanations) {
   std::vector<std::string> chances;
   for (const EffectChance& one : explanations.effects) {
-    if (chances.size() == kMostChances) break;
+    if (chances.size() == kMostChances || one.probability < kLeastSaid) break;
     chances.push_back(fmt::format("{} {}", with_look_alikes(one.effect, one.otherwise),
                                   likelihood_text(one.probability)));
   }
   std::string text;
   for (const std::string& one : chances) text += (text.empty() ? "" : "; ") + one;
-  if (explanations.effects.size() > chances.size()) {
-    text += fmt::format("; {} more", explanations.effects.size() - chances.size());
-  }
   return text;
 }
 
