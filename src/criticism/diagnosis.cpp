@@ -51,8 +51,7 @@ class Diagnostician {
         tests_(state_),
         search_(state_, tests_, {options.level, options.most_missing}, legs_.get()) {}
 
-  /// `proposed`: what is missing, where that is known better than the search does; else empty.
-  DiagnosisRun run(const std::vector<Effect>& proposed) {
+  DiagnosisRun run() {
     result_.chi2 = fit_.chi2;
     result_.dof = fit_.dof;
     result_.coefficients = fit_.coefficients;
@@ -62,9 +61,7 @@ class Diagnostician {
     result_.lacks = lacks_of(recordings_, fit_.model.robot, fit_.options);
     search_.run();
     result_.tried = static_cast<std::size_t>(search_.tried());
-    if (!search_.missing().empty() && !proposed.empty()) search_.propose(proposed);
-    const int exchanges = proposed.empty() ? kMostExchanges : 0;
-    for (std::size_t k = 0; k < search_.missing().size(); ++k) weigh_look_alikes(k, exchanges);
+    for (std::size_t k = 0; k < search_.missing().size(); ++k) weigh_look_alikes(k);
     if (search_.missing().empty()) {
       for (TestedEvent& one : test_events(state_, tests_)) result_.events.push_back(std::move(one));
       result_.noise = test_noise_laws(state_, tests_);
@@ -78,7 +75,7 @@ class Diagnostician {
 
  private:
   /// Of one that is missing, and whether one of them explains more.
-  void weigh_look_alikes(std::size_t rank, int exchanges) {
+  void weigh_look_alikes(std::size_t rank) {
     look_alikes_.emplace_back();
     for (int exchange = 0;; ++exchange) {
       std::vector<std::size_t> missing;
@@ -101,7 +98,7 @@ class Diagnostician {
       const bool other = at < search_.tested().size() &&
                          std::find(missing.begin(), missing.end(), at) == missing.end() &&
                          !is_implausible(search_.tested()[at]);
-      if (!other || exchange == exchanges) return;
+      if (!other || exchange == kMostExchanges) return;
       search_.exchange(rank, at);
     }
   }
@@ -332,10 +329,9 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
   DiagnosisRun run;
   std::vector<Candidate> found;
   std::vector<Effect> missing;
-  std::vector<Effect> proposed;
   std::optional<ModelFit> with;  // what is missing, where it can be fitted
   const auto judge = [&] {
-    run = Diagnostician(recordings, under->fit, options, known).run(proposed);
+    run = Diagnostician(recordings, under->fit, options, known).run();
     found = candidates_found(run);
     missing.clear();
     for (const Candidate& one : found) missing.push_back(one.effect);
@@ -358,18 +354,10 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
     Defended defended = defended_against_noise(
         recordings, *under, with, missing,
         {stated, static_cast<double>(run.result.tried), options.level, as_stated});
-    if (!defended.otherwise) return;
-    proposed.clear();
-    judge_by(std::move(*defended.otherwise));
+    if (defended.otherwise) judge_by(std::move(*defended.otherwise));
   };
   defend();
   explain(run.result, run.searched, under->fit, with);
-  proposed = likelier_than_named(run.result.explanations);
-  if (!proposed.empty()) {  // what was found one after the other is not what explains it best
-    judge();
-    defend();
-    explain(run.result, run.searched, under->fit, with);
-  }
   const Noise& asked_of = options.estimate_noise ? stated : fit.model.noise;
   bool answered = under->noise.changed();  // the noise is not the model's any more
   if (!missing.empty()) {

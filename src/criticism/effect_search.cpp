@@ -20,6 +20,8 @@ constexpr double kSecondLevel = 0.02;   // of the level
 constexpr double kSecondShare = 0.002;  // of the chi^2 that the first explain
 constexpr std::size_t kFamiliesRefined = 3;
 constexpr double kLawLevel = 0.01;
+/// Of the chi^2 that the others explain, what tests of a model without them may be out by.
+constexpr double kOutByLarge = 0.02;
 constexpr double kStays = 0.001;  // p, with the others there
 constexpr std::size_t kMostEvents = 8;
 
@@ -278,25 +280,8 @@ void EffectSearch::take_best_set(const FitState& ground, const ScoreTest& left) 
   const std::vector<std::size_t> best =
       better_set(found, tested_,
                  {ground, left, dof, tried_, options_.level, kSecondLevel * options_.level,
-                  kSecondShare, options_.most_missing});
+                  kOutByLarge, options_.most_missing});
   if (best != found) take_all(best);
-}
-
-void EffectSearch::propose(const std::vector<Effect>& effects) {
-  std::vector<std::size_t> places;
-  for (const Effect& effect : effects) {
-    const auto found = std::find_if(tested_.begin(), tested_.end(), [&](const Tested& one) {
-      return one.candidate.effect.name == effect.name && one.candidate.effect.shape == effect.shape;
-    });
-    if (found == tested_.end()) return;
-    places.push_back(static_cast<std::size_t>(found - tested_.begin()));
-  }
-  take_all(places);
-  std::stable_sort(
-      missing_.begin(), missing_.end(), [this](const MissingEffect& a, const MissingEffect& b) {
-        return plausible_evidence(tested_[a.tested]) > plausible_evidence(tested_[b.tested]);
-      });
-  estimate_jointly();
 }
 
 /// Nothing is significant by itself. What hides much leaves a chi^2 that is hardly small.

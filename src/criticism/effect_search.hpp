@@ -51,10 +51,6 @@ class EffectSearch {
 
   void run();
 
-  /// These are missing in place of what was found; nothing changes where one of them was not
-  /// tested.
-  void propose(const std::vector<Effect>& effects);
-
   /// Another in the place of one that is missing: its look-alike, which fits better.
   void exchange(std::size_t rank, std::size_t tested);
 

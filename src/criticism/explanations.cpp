@@ -387,31 +387,6 @@ void allow_what_is_likely(Diagnosis& diagnosis) {
 
 }  // namespace
 
-std::vector<Effect> likelier_than_named(const Explanations& explanations) {
-  if (explanations.sets.empty()) return {};
-  constexpr double kLikely = 0.5;
-  const auto chance_of = [&](const Effect& effect) {
-    for (const EffectChance& one : explanations.effects) {
-      if (one.effect.name == effect.name) return one.probability;
-    }
-    return 0.0;
-  };
-  const auto named = std::find_if(explanations.sets.begin(), explanations.sets.end(),
-                                  [](const EffectSet& one) { return one.named; });
-  if (named == explanations.sets.begin() || named == explanations.sets.end()) return {};
-  const bool doubtful =
-      std::any_of(named->effects.begin(), named->effects.end(),
-                  [&](const ExplainingEffect& one) { return chance_of(one.effect) < kLikely; });
-  if (named->behind <= kListedBehind && !doubtful) return {};
-  std::vector<Effect> likely;
-  for (const ExplainingEffect& one : explanations.sets.front().effects) {
-    if (chance_of(one.effect) < kLikely) continue;
-    likely.push_back(one.effect);
-    likely.back().coefficients.clear();
-  }
-  return likely;
-}
-
 void explain(Diagnosis& diagnosis, const SearchedEffects& searched, const ModelFit& fit,
              const std::optional<ModelFit>& with) {
   const std::vector<NamedEffect> named = named_in(diagnosis, searched);

@@ -43,10 +43,6 @@ struct NamedEffect {
 void explain(Diagnosis& diagnosis, const SearchedEffects& searched, const ModelFit& fit,
              const std::optional<ModelFit>& with);
 
-/// The likely effects of the best set, without coefficients, where what is named is far behind it
-/// (6 units) or has an effect that is less likely than not; else none.
-[[nodiscard]] std::vector<Effect> likelier_than_named(const Explanations& explanations);
-
 /// Effects that belong to every set, put before the others.
 void put_before(Explanations& explanations, const std::vector<ExplainingEffect>& certain);
 

@@ -317,7 +317,7 @@ inline constexpr auto kDescribed<DiscoveryStep> = described(
           "stretches"),
     field("reckoned_30_s_m", &DiscoveryStep::reckoned_30, "the same over 30 s"),
     field("together", together_in,
-          "effects added together with it, where the model cannot be fitted with them alone")
+          "effects added together with it, which cannot be fitted alone or hide each other")
         .if_any(),
     field("dropped", of_added<&DiscoveryStep::dropped>, "effects that are no longer significant")
         .if_any(),

@@ -9,6 +9,7 @@
 #include "trussmap/simulated_recording.hpp"
 #include "trussmap/texts.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <regex>
@@ -115,9 +116,13 @@ bool names_too_many(const std::string& text, const Known&) {
   return false;
 }
 
-/// What all measurements tell apart does not explain the legs as well in another's place.
+/// What all measurements tell apart from all that it looks like explains the legs in nothing's
+/// place.
 bool set_has_what_is_told_apart(const std::string& text, const Known&) {
-  for (const std::string& name : named_on(lines_of(text), "  looks much like it: ")) {
+  const std::vector<std::string> lines = lines_of(text);
+  const std::vector<std::string> same = named_on(lines, "  looks the same here: ");
+  for (const std::string& name : named_on(lines, "  looks much like it: ")) {
+    if (std::find(same.begin(), same.end(), name) != same.end()) continue;
     if (says(text, "(or " + name) || says(text, ", or " + name)) return true;
   }
   return false;
