@@ -21,6 +21,7 @@
 //                either, since what is alike to first order may differ beyond
 //   absent       where even the minimal detectable size would raise the arrival error by less than
 //                5 %
+//   sets         all that explain about as much as what is missing does, with probabilities
 //   misfit       where no effect is missing: by the rule of compare.hpp
 //
 // Laws of noise (beyond what the model states) and single events are asked of what the findings
@@ -84,6 +85,8 @@ struct Finding {
   /// coefficient; empty where none was.
   std::vector<double> widened;
   int tried = 1;  ///< members of its family
+  /// By itself it explains next to nothing: it and others that are missing hide each other.
+  bool only_together = false;
 };
 
 /// Why recordings cannot show an effect.
@@ -156,6 +159,43 @@ struct NextDrive {
   std::vector<std::string> slow;  ///< covariates that vary slowly over the recordings
 };
 
+// ----------------------------------------
+// Sets of effects.
+
+/// An effect of a set, with its size beside the others of the set.
+struct ExplainingEffect {
+  Effect effect;
+  std::vector<double> sd;              ///< one per coefficient
+  std::vector<std::string> otherwise;  ///< names of look-alikes that explain about as much
+};
+
+/// Effects that explain the recordings together.
+struct EffectSet {
+  std::vector<ExplainingEffect> effects;
+  double behind = 0.0;         ///< of log evidence behind the best set
+  double probability = 0.0;    ///< its own and that of sets which only add to it
+  double chi2_decrease = 0.0;  ///< that adding them takes away, to first order
+  bool named = false;          ///< what the findings say is missing
+};
+
+/// How likely an effect, or one that looks like it, is part of the explanation.
+struct EffectChance {
+  Effect effect;  ///< without coefficients
+  std::vector<std::string> otherwise;
+  double probability = 0.0;
+};
+
+/// All sets of effects about as good as the best: 6 units of log evidence behind at most, odds of
+/// 400 to 1. Every candidate, pair and triple was weighed, larger sets begun with the best ones
+/// (criticism/subset_search.hpp): sizes equally likely on a logarithmic scale, numbers of effects
+/// by Poisson's law of mean 1, look-alikes sharing one belief. What only adds to a likelier set
+/// counts as that one. Empty where nothing is missing.
+struct Explanations {
+  std::vector<EffectSet> sets;        ///< best first
+  std::vector<EffectChance> effects;  ///< likeliest first, from 0.01 on
+  double none_of_these = 0.0;         ///< probability of all other sets, that of no effect included
+};
+
 struct Diagnosis {
   enum class Verdict { missing, nothing_missing, unexplained_misfit };
   Verdict verdict = Verdict::nothing_missing;
@@ -170,6 +210,7 @@ struct Diagnosis {
   HeldOut held_out;               ///< of the present model
   HeldOutMetrics with_missing;    ///< predicted, with all that is missing added
   std::vector<Finding> findings;  ///< best first
+  Explanations explanations;
   std::vector<Unobservable> unobservable;
   std::vector<NoiseTest> noise;   ///< best explanation first
   std::vector<EventTest> events;  ///< likeliest first

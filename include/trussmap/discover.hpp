@@ -27,7 +27,7 @@ namespace trussmap {
 /// One model on the way.
 struct DiscoveryStep {
   std::optional<Effect> added;  ///< none: the model given
-  /// Added together with it: the model cannot be fitted with them alone.
+  /// Added together with it: alone they cannot be fitted, or hide each other.
   std::vector<Effect> together = {};
   std::vector<std::string> dropped;
   double chi2 = 0.0;

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/diagnosis.hpp"
 
+#include "criticism/constants_first.hpp"
 #include "criticism/data_lacks.hpp"
 #include "criticism/defence.hpp"
 #include "criticism/effect_search.hpp"
+#include "criticism/explanations.hpp"
 #include "criticism/look_alikes.hpp"
 #include "criticism/noise_beside.hpp"
 #include "criticism/place_uncertainty.hpp"
@@ -31,7 +33,8 @@ namespace {
 constexpr double kPractical = 0.05;    // rise of the arrival error
 constexpr double kNegligible = 0.002;  // the same
 constexpr double kFitsAnyway = 0.05;   // p
-constexpr double kExplains = 1e-6;     // p, below which an adjustment warns of chi^2
+constexpr int kMostExchanges = 2;
+constexpr double kExplains = 1e-6;  // p, below which an adjustment warns of chi^2
 
 /// Reports what a search has found.
 class Diagnostician {
@@ -65,13 +68,14 @@ class Diagnostician {
     }
     report_findings();
     find_verdict();
-    return {std::move(result_), std::move(candidates_), {}};
+    SearchedEffects searched{search_.tested(), {}, search_.events()};
+    for (const MissingEffect& one : search_.missing()) searched.missing.push_back(one.tested);
+    return {std::move(result_), std::move(candidates_), {}, std::move(searched)};
   }
 
  private:
   /// Of one that is missing, and whether one of them explains more.
   void weigh_look_alikes(std::size_t rank) {
-    constexpr int kMostExchanges = 2;
     look_alikes_.emplace_back();
     for (int exchange = 0;; ++exchange) {
       std::vector<std::size_t> missing;
@@ -238,6 +242,7 @@ class Diagnostician {
       Tested beside_the_others = one;
       beside_the_others.score.coefficients = finding.joint;
       finding.implausible = is_implausible(beside_the_others);
+      finding.only_together = search_.only_together();
       finding.widened = widening_of(k);
       for (std::size_t c = 0; c < finding.widened.size(); ++c) {
         finding.sd[c] *= finding.widened[c];
@@ -343,13 +348,16 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
       judge_by(std::move(*beside));
     }
   }
-  if (options.estimate_noise && !missing.empty()) {
+  const auto defend = [&] {
+    if (!options.estimate_noise || missing.empty()) return;
     const bool as_stated = under->fit.model.noise == stated && under->fit.p_value > kFitsAnyway;
     Defended defended = defended_against_noise(
         recordings, *under, with, missing,
         {stated, static_cast<double>(run.result.tried), options.level, as_stated});
     if (defended.otherwise) judge_by(std::move(*defended.otherwise));
-  }
+  };
+  defend();
+  explain(run.result, run.searched, under->fit, with);
   const Noise& asked_of = options.estimate_noise ? stated : fit.model.noise;
   bool answered = under->noise.changed();  // the noise is not the model's any more
   if (!missing.empty()) {
@@ -373,65 +381,15 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
   return run;
 }
 
-/// The constants come first; what else is missing, and the noise, are judged beside them.
-DiagnosisRun diagnosis_beside(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
-                              GrossConstants constants, const Noise& stated,
-                              const DiagnoseOptions& options) {
-  DiagnosisRun run = diagnosis_about(recordings, constants.fit, stated, options, {});
-  Diagnosis& result = run.result;
-  ModelFit given = fit;
-  if (result.under) {
-    constants.fit = result.under->fit;
-    const Noise& noise = constants.fit.model.noise;
-    if (!(noise == fit.model.noise)) given = refit_under(recordings, fit, noise);
-    result.under = std::make_shared<const FitWithNoise>(FitWithNoise{given, result.under->noise});
-  }
-  if (result.verdict != Diagnosis::Verdict::missing) {
-    result.with_missing = metrics_of(result.held_out);
-  }
-  result.held_out = predict_held_out(recordings, given, options.legs);
-  std::vector<Finding> first = findings_of(recordings, given, constants, options.legs);
-  result.verdict = Diagnosis::Verdict::missing;
-  result.objection = Objection::none;
-  result.missing = first.front().effect.name;
-  result.p_value = first.front().p_adjusted;
-  result.chi2 = given.chi2;
-  result.dof = given.dof;
-  result.coefficients = given.coefficients;
-  result.next_drive.reset();
-  if (const LookAlike* rival = closest_rival(first.front().look_alikes)) {
-    result.next_drive = {first.front().effect, rival->effect, slow_covariates(recordings)};
-  }
-  std::vector<Candidate> candidates;
-  for (const Finding& one : first) {
-    candidates.emplace_back();
-    candidates.back().effect = one.effect;
-  }
-  std::erase_if(result.unobservable, [&first](const Unobservable& one) {
-    return std::any_of(first.begin(), first.end(), [&one](const Finding& finding) {
-      return find_among(one.effect, finding.look_alikes) != nullptr;  // that is said already
-    });
-  });
-  std::vector<std::vector<LookAlike>> rivals;
-  rivals.reserve(first.size());
-  for (const Finding& one : first) rivals.push_back(one.look_alikes);
-  for (Finding& other : result.findings) {
-    if (other.status != Status::cannot_tell && other.status != Status::absent) continue;
-    other.status = status_beside(other.effect, rivals).value_or(other.status);
-  }
-  result.findings.insert(result.findings.begin(), first.begin(), first.end());
-  run.candidates.insert(run.candidates.begin(), candidates.begin(), candidates.end());
-  run.gross = std::move(constants);
-  return run;
-}
-
 }  // namespace
 
 DiagnosisRun run_diagnosis(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                            const Noise& stated, const DiagnoseOptions& options,
                            const KnownLegs& known) {
   if (std::optional<GrossConstants> gross = gross_constants(recordings, fit, options.legs)) {
-    return diagnosis_beside(recordings, fit, *std::move(gross), stated, options);
+    DiagnosisRun run = diagnosis_about(recordings, gross->fit, stated, options, {});
+    put_constants_first(recordings, fit, *std::move(gross), options, run);
+    return run;
   }
   return diagnosis_about(recordings, fit, stated, options, known);
 }

@@ -6,6 +6,7 @@
 
 #include "criticism/candidates.hpp"
 #include "criticism/gross_constants.hpp"
+#include "criticism/tested_candidate.hpp"
 #include "trussmap/diagnose.hpp"
 #include "validation/held_out_legs.hpp"
 
@@ -15,11 +16,19 @@
 
 namespace trussmap {
 
+/// What a search has asked of.
+struct SearchedEffects {
+  std::vector<Tested> tested;
+  std::vector<std::size_t> missing;  ///< their places among these
+  Eigen::MatrixXd events;            ///< projected columns of events that came first
+};
+
 struct DiagnosisRun {
   Diagnosis result;
   std::vector<Candidate> candidates;  ///< one per finding
   /// Constants that explain most, the first findings; all others are about the fit with them.
   std::optional<GrossConstants> gross;
+  SearchedEffects searched;
 };
 
 /// Held-out legs that are worked out already, of the fit with this state.

@@ -3,6 +3,7 @@
 #include "criticism/diagnosis.hpp"
 #include "criticism/effect_strength.hpp"
 #include "criticism/place_uncertainty.hpp"
+#include "criticism/refits.hpp"
 #include "fit/fit_state.hpp"
 #include "linalg/dense.hpp"
 #include "trussmap/discover.hpp"
@@ -182,7 +183,7 @@ class Discoverer {
         result_.stopped = {StopReason::limit_reached, {}, options_.most_effects};
         break;
       }
-      if (!add_best()) break;
+      if (!(result_.last.findings.front().only_together ? add_together() : add_best())) break;
     }
     result_.consistent = result_.last.verdict == Diagnosis::Verdict::nothing_missing;
     widen_for_places(result_.found, found_);
@@ -314,6 +315,41 @@ class Discoverer {
     step.predicted_decrease = winner.score;
     step.predicted = winner.held_out;
     step.look_alikes = std::move(look_alikes);
+    return true;
+  }
+
+  /// Effects that hide each other, all at once.
+  bool add_together() {
+    std::vector<Candidate> added;
+    std::vector<Effect> effects;
+    for (std::size_t k = 0; k < result_.last.findings.size(); ++k) {
+      if (!result_.last.findings[k].only_together) continue;
+      added.push_back(candidates_[k]);
+      effects.push_back(candidates_[k].effect);
+    }
+    std::optional<ModelFit> fit = if_fitted_with(recordings_, result_.found, effects);
+    if (!fit || !was_fitted(*fit)) {
+      stop(StopReason::cannot_be_fitted, effects.front().name);
+      return false;
+    }
+    Trial trial{added.back(), *std::move(fit)};
+    if (predicts_worse(result_.steps.back().held_out, trial, recordings_,
+                       options_.diagnosis.legs)) {
+      stop(StopReason::predicts_worse, effects.front().name);
+      return false;
+    }
+    found_.insert(found_.end(), added.begin(), added.end());
+    legs_ = {trial.fit.state, trial.legs};
+    result_.found = std::move(trial.fit);
+    DiscoveryStep& step = record();
+    effects = result_.found.model.effects;
+    step.added = effects.back();
+    step.together.assign(effects.end() - static_cast<std::ptrdiff_t>(added.size()),
+                         effects.end() - 1);
+    for (const EffectSet& one : result_.last.explanations.sets) {
+      if (one.named) step.predicted_decrease = one.chi2_decrease;
+    }
+    step.predicted = result_.last.with_missing;
     return true;
   }
 

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/effect_search.hpp"
 
+#include "criticism/best_set.hpp"
 #include "criticism/formula_search.hpp"
 #include "criticism/known_causes.hpp"
 #include "linalg/dense.hpp"
+#include "statistics/distributions.hpp"
 
 #include <algorithm>
 #include <map>
@@ -18,6 +20,8 @@ constexpr double kSecondLevel = 0.02;   // of the level
 constexpr double kSecondShare = 0.002;  // of the chi^2 that the first explain
 constexpr std::size_t kFamiliesRefined = 3;
 constexpr double kLawLevel = 0.01;
+/// Of the chi^2 that the others explain, what tests of a model without them may be out by.
+constexpr double kOutByLarge = 0.02;
 constexpr double kStays = 0.001;  // p, with the others there
 constexpr std::size_t kMostEvents = 8;
 
@@ -25,7 +29,12 @@ constexpr std::size_t kMostEvents = 8;
 
 EffectSearch::EffectSearch(const FitState& fit, const ScoreTest& tests,
                            const SearchOptions& options, const HeldOutLegs* legs)
-    : fit_(fit), tests_(tests), options_(options), legs_(legs), dispersion_(fit, tests) {
+    : fit_(fit),
+      tests_(tests),
+      options_(options),
+      legs_(legs),
+      dispersion_(fit, tests),
+      events_(tests.residuals().size(), 0) {
   if (legs_ != nullptr && !legs_->has_slopes()) legs_ = nullptr;
 }
 
@@ -142,7 +151,7 @@ std::optional<TestedEvent> EffectSearch::claiming_event(const FitState& ground,
 /// Laws of noise and single events that have a better claim than any effect come before them.
 /// `still`: the effects, asked of what is left.
 void EffectSearch::let_others_claim(ScoreTest& left, const FitState& ground,
-                                    std::vector<Tested>& still) const {
+                                    std::vector<Tested>& still) {
   const auto significant = [this](const Tested& one) {
     return one.score.dof > 0 && one.p_adjusted < options_.level;
   };
@@ -151,12 +160,11 @@ void EffectSearch::let_others_claim(ScoreTest& left, const FitState& ground,
     test_again(ground, left, still);
     judge(still, left.residuals().squaredNorm(), dof, tried_);
   }
-  Eigen::MatrixXd nuisance(left.residuals().size(), 0);
   for (std::size_t k = 0; k < kMostEvents; ++k) {
-    const std::optional<TestedEvent> event = claiming_event(ground, left, still, nuisance);
+    const std::optional<TestedEvent> event = claiming_event(ground, left, still, events_);
     if (!event) return;
     left.condition_on(event->projected);
-    append_columns(nuisance, event->projected);
+    append_columns(events_, event->projected);
     dof -= event->dof;
     std::vector<double> p_before;
     p_before.reserve(still.size());
@@ -171,7 +179,7 @@ void EffectSearch::let_others_claim(ScoreTest& left, const FitState& ground,
 }
 
 void EffectSearch::find_missing() {
-  if (best_of(tested_, options_.level) == nullptr) return;
+  if (best_of(tested_, options_.level) == nullptr) return take_masked();
   const std::vector<NoiseTest> laws = test_noise_laws(fit_, tests_);
   const NoiseTest* law = leading_law(laws, tested_, options_.level);
   const std::optional<FitState> noisier =
@@ -187,6 +195,7 @@ void EffectSearch::find_missing() {
   const ScoreTest at_first = left;
   select(left, ground, still);
   take_known_causes(ground, at_first);
+  take_best_set(ground, at_first);
   std::stable_sort(
       missing_.begin(), missing_.end(), [this](const MissingEffect& a, const MissingEffect& b) {
         return plausible_evidence(tested_[a.tested]) > plausible_evidence(tested_[b.tested]);
@@ -253,13 +262,49 @@ void EffectSearch::take_known_causes(const FitState& ground, const ScoreTest& le
   }
 }
 
-void EffectSearch::exchange(std::size_t rank, std::size_t tested) {
-  missing_.at(rank) = {tested, {}};
+void EffectSearch::take_all(const std::vector<std::size_t>& places) {
+  missing_.clear();
   nuisance_.resize(nuisance_.rows(), 0);
-  for (const MissingEffect& one : missing_) {
-    append_columns(nuisance_,
-                   tests_.test({tested_[one.tested].candidate.effect}).front().projected);
+  for (const std::size_t one : places) {
+    append_columns(nuisance_, tests_.test({tested_[one].candidate.effect}).front().projected);
+    missing_.push_back({one, {}});
   }
+}
+
+/// Among all that was tested, formulas that were taken included.
+void EffectSearch::take_best_set(const FitState& ground, const ScoreTest& left) {
+  std::vector<std::size_t> found;
+  for (const MissingEffect& one : missing_) found.push_back(one.tested);
+  if (found.empty()) return;
+  const int dof = fit_.adjustment.dof - static_cast<int>(events_.cols());
+  const std::vector<std::size_t> best =
+      better_set(found, tested_,
+                 {ground, left, dof, tried_, options_.level, kSecondLevel * options_.level,
+                  kOutByLarge, options_.most_missing});
+  if (best != found) take_all(best);
+}
+
+/// Nothing is significant by itself. What hides much leaves a chi^2 that is hardly small.
+void EffectSearch::take_masked() {
+  constexpr double kHides = 0.2;  // p
+  if (chi2_p_value(fit_.adjustment.chi2, fit_.adjustment.dof) > kHides) return;
+  const MaskedSet masked =
+      masked_set(tested_, {fit_, tests_, fit_.adjustment.dof, tried_, options_.level,
+                           kSecondLevel * options_.level, kSecondShare, options_.most_missing});
+  if (masked.tested.empty()) return;
+  take_all(masked.tested);
+  for (const std::size_t one : masked.tested) {
+    tested_[one].p_adjusted = std::min(tested_[one].p_adjusted, masked.p_adjusted);
+  }
+  estimate_jointly();
+  only_together_ = true;
+}
+
+void EffectSearch::exchange(std::size_t rank, std::size_t tested) {
+  std::vector<std::size_t> places;
+  for (const MissingEffect& one : missing_) places.push_back(one.tested);
+  places.at(rank) = tested;
+  take_all(places);
   estimate_jointly();
 }
 

@@ -10,7 +10,9 @@
 //   select           best, or a formula that says it better (formula_search.hpp); conditioned on
 //                    it the next, and so on
 //   known causes     of the catalogue, that together explain what a free form does
+//   best set         of all of up to four, where it is well ahead of what was found one by one
 //   drop             backward elimination of what the others explain
+//   masked           where nothing is significant: effects that are so only together
 #pragma once
 
 #include "criticism/event_tests.hpp"
@@ -58,6 +60,10 @@ class EffectSearch {
   }  ///< best first
   /// Projected columns of what is missing.
   [[nodiscard]] const Eigen::MatrixXd& nuisance() const { return nuisance_; }
+  /// Projected columns of the events that had the better claim.
+  [[nodiscard]] const Eigen::MatrixXd& events() const { return events_; }
+  /// Whether what is missing is significant only together.
+  [[nodiscard]] bool only_together() const { return only_together_; }
   [[nodiscard]] int tried() const { return tried_; }
 
  private:
@@ -69,7 +75,10 @@ class EffectSearch {
   void select(ScoreTest& left, const FitState& ground, std::vector<Tested>& still);
   void take_formula(const Tested& formula, std::vector<Tested>& still);
   void take_known_causes(const FitState& ground, const ScoreTest& left);
-  void let_others_claim(ScoreTest& left, const FitState& ground, std::vector<Tested>& still) const;
+  void take_best_set(const FitState& ground, const ScoreTest& left);
+  void take_masked();
+  void take_all(const std::vector<std::size_t>& places);
+  void let_others_claim(ScoreTest& left, const FitState& ground, std::vector<Tested>& still);
   [[nodiscard]] std::optional<TestedEvent> claiming_event(const FitState& ground,
                                                           const ScoreTest& left,
                                                           const std::vector<Tested>& still,
@@ -86,6 +95,8 @@ class EffectSearch {
   std::vector<Tested> tested_;
   std::vector<MissingEffect> missing_;
   Eigen::MatrixXd nuisance_;
+  Eigen::MatrixXd events_;
+  bool only_together_ = false;
 };
 
 }  // namespace trussmap

@@ -152,7 +152,7 @@ std::vector<EffectEvidence> effect_evidence(const FitState& without, const Model
     const auto place =
         with != nullptr ? place_among(with->effects, seen.estimate.effect) : std::nullopt;
     if (place) {
-      const ScoreTest tests = there->lacking(*place, seen.estimate.effect);
+      const ScoreTest tests = there->lacking(*place, {seen.estimate.effect});
       result.push_back(
           seen_effect(seen.estimate, drawn_rivals(seen.rivals, tests), *with->state, tests));
       continue;

@@ -305,7 +305,7 @@ std::vector<LookAlike> look_alikes_at(const std::vector<DrivenRecording>& record
                                       std::size_t place) {
   const FitState& state = *fit.state;
   const Effect& effect = fit.model.effects[place];
-  const ScoreTest tests = at_fit.lacking(place, effect);
+  const ScoreTest tests = at_fit.lacking(place, {effect});
   std::vector<Tested> asked(1);
   asked.front().candidate.effect = effect;
   for (const Candidate& one : candidates_for(state, tests.context())) {

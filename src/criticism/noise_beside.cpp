@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/noise_beside.hpp"
 
+#include "criticism/best_set.hpp"
 #include "criticism/candidates.hpp"
 #include "criticism/refits.hpp"
 #include "criticism/tested_candidate.hpp"
@@ -31,6 +32,21 @@ bool was_sought(const Candidate& one) {
                      [](const Shape& shape) { return !shape.parameters().empty(); });
 }
 
+/// Two that hide each other, where no candidate by itself is suspicious.
+std::vector<std::size_t> suspicious_pair(const ScoreTest& tests,
+                                         const std::vector<Candidate>& candidates, int dof) {
+  GramBuilder builder(tests.residuals().size());
+  std::vector<Tested> asked;
+  for (const Candidate& one : candidates) {
+    asked.emplace_back();
+    asked.back().candidate = one;
+  }
+  visit_scores(tests, candidates, Resolution::quick, [&](std::size_t k, const Score& score) {
+    builder.add(k, candidates[k].effect, score);
+  });
+  return masked_pair(builder.gram(tests.residuals()), asked, {tests, dof, 2, 0.0}, kSuspicious);
+}
+
 /// What explains most, each conditioned on those before it.
 std::vector<Effect> suspects(const FitState& fit) {
   ScoreTest tests(fit);
@@ -57,7 +73,13 @@ std::vector<Effect> suspects(const FitState& fit) {
       most = evidence;
       best = k;
     });
-    if (!best) break;
+    if (!best) {
+      if (round + 1 == kMostSuspects) break;
+      for (const std::size_t k : suspicious_pair(tests, candidates, dof)) {
+        found.push_back(candidates[k].effect);
+      }
+      break;
+    }
     const Effect& suspect = candidates[*best].effect;
     const Score score = tests.test({suspect}).front();
     if (score.dof == 0) break;

@@ -104,18 +104,21 @@ void ScoreTest::condition_on(const Eigen::MatrixXd& columns) {
   residuals_ -= present_.rightCols(rank) * (present_.rightCols(rank).transpose() * residuals_);
 }
 
-ScoreTest ScoreTest::lacking(std::size_t effect, const Effect& fitted) const {
+ScoreTest ScoreTest::lacking(std::size_t first, const std::vector<Effect>& fitted) const {
   ScoreTest result = *this;
-  const Eigen::MatrixXd own = columns(fitted);
-  result.residuals_ =
-      free_of_map(system_->residuals() -
-                  own * Eigen::Map<const Eigen::VectorXd>(fitted.coefficients.data(), own.cols()));
+  Eigen::VectorXd residuals = system_->residuals();
+  for (const Effect& one : fitted) {
+    const Eigen::MatrixXd own = columns(one);
+    residuals -= own * Eigen::Map<const Eigen::VectorXd>(one.coefficients.data(), own.cols());
+  }
+  result.residuals_ = free_of_map(residuals);
   result.present_.resize(residuals_.size(), 0);
   const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
   Eigen::MatrixXd others(residuals_.size(), static_cast<Eigen::Index>(unknown.size()));
   Eigen::Index count = 0;
   for (std::size_t k = 0; k < unknown.size(); ++k) {
-    if (fit_.columns.coefficients[idx(unknown[k])].effect == effect) continue;
+    const std::size_t effect = fit_.columns.coefficients[idx(unknown[k])].effect;
+    if (effect >= first && effect < first + fitted.size()) continue;
     others.col(count++) = clean_system_->border().col(static_cast<Eigen::Index>(k));
   }
   result.condition_on(others.leftCols(count));

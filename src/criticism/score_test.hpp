@@ -62,10 +62,10 @@ class ScoreTest {
   /// Keeps a reference to the fit. A copy shares all but what it is conditioned on.
   explicit ScoreTest(const FitState& fit);
 
-  /// The same of the model without one of its effects, to first order about this very fit: what the
-  /// effect does there is put back into the residuals, and nothing of it is present. A fit without
-  /// it would be elsewhere, as far off as the effect is large. The effect has coefficients.
-  [[nodiscard]] ScoreTest lacking(std::size_t effect, const Effect& fitted) const;
+  /// The same of the model without some of its effects, from `first` on, to first order about this
+  /// very fit: what they do there is put back into the residuals, and nothing of them is present. A
+  /// fit without them would be elsewhere, as far off as they are large. They have coefficients.
+  [[nodiscard]] ScoreTest lacking(std::size_t first, const std::vector<Effect>& fitted) const;
 
   /// Tests several candidates at once (their coefficients at 0). Throws
   /// std::invalid_argument like effect_columns.

@@ -9,6 +9,7 @@
 #include "report/result_rows.hpp"
 #include "report/rivals.hpp"
 #include "report/robot_off.hpp"
+#include "report/sets_of_effects.hpp"
 #include "trussmap/wording.hpp"
 
 #include <algorithm>
@@ -220,6 +221,11 @@ PageSection cause_section(const SizedDiagnosis& sized, const DiagnosisEvidence& 
   }
   PageTable rivals = rivals_table(sized);
   if (!rivals.rows.empty()) section.details.emplace_back(std::move(rivals));
+  PageTable sets = sets_table(diagnosis);
+  if (!sets.rows.empty()) {
+    section.blocks.emplace_back(chances_note(diagnosis));
+    section.details.emplace_back(std::move(sets));
+  }
   return section;
 }
 

@@ -200,6 +200,32 @@ inline constexpr auto kDescribed<Unobservable> = described(
     field(
         "remedy", [](const Unobservable& one) { return advice_on(one).drive; }, "what would"));
 
+template <>
+inline constexpr auto kDescribed<ExplainingEffect> =
+    described(keys_of("effect", &ExplainingEffect::effect),
+              field("coefficients", through(&ExplainingEffect::effect, &Effect::coefficients),
+                    "with the others of the set"),
+              field("sd", &ExplainingEffect::sd, "standard errors").or_null(),
+              field("otherwise", &ExplainingEffect::otherwise,
+                    "names of look-alikes that explain about as much in its place"));
+
+template <>
+inline constexpr auto kDescribed<EffectSet> = described(
+    field("effects", &EffectSet::effects, "that explain the recordings together"),
+    field("log_evidence_behind", &EffectSet::behind, "the best set").at_least(0.0),
+    share("probability", &EffectSet::probability,
+          "that it, or a set that only adds to it, is the explanation"),
+    field("chi2_decrease", &EffectSet::chi2_decrease,
+          "that adding them takes away, to first order"),
+    field("named", &EffectSet::named, "whether it is what the candidates say is missing"));
+
+template <>
+inline constexpr auto kDescribed<EffectChance> = described(
+    keys_of("effect", &EffectChance::effect),
+    field("otherwise", &EffectChance::otherwise, "names of look-alikes, which count as it"),
+    share("probability", &EffectChance::probability,
+          "that it, or one that looks like it, is part of the explanation"));
+
 /// The noise that a diagnosis goes by; nullptr where none was estimated.
 [[nodiscard]] inline const FittedNoise* noise_of(const Diagnosis& result) {
   return result.under ? &result.under->noise : nullptr;
@@ -221,6 +247,13 @@ inline constexpr auto kDescribed<Diagnosis> = described(
     field("heldout", &Diagnosis::held_out, "how well the model predicts legs that it has not seen"),
     field("tried", &Diagnosis::tried, "tests"),
     field("candidates", &Diagnosis::findings, "best first"),
+    field("explanations", through(&Diagnosis::explanations, &Explanations::sets),
+          "all sets of effects within 6 units of log evidence of the best (odds of 400 to 1), best "
+          "first; none where nothing is missing"),
+    field("effect_probabilities", through(&Diagnosis::explanations, &Explanations::effects),
+          "of being part of the explanation, likeliest first, from 0.01 on"),
+    share("probability_otherwise", through(&Diagnosis::explanations, &Explanations::none_of_these),
+          "of all sets that are not listed"),
     field("noise", &Diagnosis::noise,
           "laws that explain what errors there are beyond what the model states, best first"),
     field("noise_estimated", noise_of, "by which all is judged; null with --stated-noise"),
@@ -284,7 +317,7 @@ inline constexpr auto kDescribed<DiscoveryStep> = described(
           "stretches"),
     field("reckoned_30_s_m", &DiscoveryStep::reckoned_30, "the same over 30 s"),
     field("together", together_in,
-          "effects added together with it, where the model cannot be fitted with them alone")
+          "effects added together with it, which cannot be fitted alone or hide each other")
         .if_any(),
     field("dropped", of_added<&DiscoveryStep::dropped>, "effects that are no longer significant")
         .if_any(),

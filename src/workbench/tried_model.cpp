@@ -236,7 +236,7 @@ EffectEvidence TriedModel::shown(std::size_t effect, const std::vector<std::size
   const FitState& fit = *tried_->fit.state;
   const EffectEstimate& estimate = tried_->fit.effects.at(effect);
   const std::scoped_lock lock(tried_->mutex);
-  const ScoreTest tests = tried_->tests->lacking(effect, estimate.effect);
+  const ScoreTest tests = tried_->tests->lacking(effect, {estimate.effect});
   return seen_effect(estimate, {}, fit, tests,
                      rows_of_legs(legs, tried_->spans, fit, tests.system()));
 }

@@ -9,6 +9,7 @@
 #include "trussmap/simulated_recording.hpp"
 #include "trussmap/texts.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <regex>
@@ -115,6 +116,31 @@ bool names_too_many(const std::string& text, const Known&) {
   return false;
 }
 
+/// What all measurements tell apart from all that it looks like explains the legs in nothing's
+/// place.
+bool set_has_what_is_told_apart(const std::string& text, const Known&) {
+  const std::vector<std::string> lines = lines_of(text);
+  const std::vector<std::string> same = named_on(lines, "  looks the same here: ");
+  for (const std::string& name : named_on(lines, "  looks much like it: ")) {
+    if (std::find(same.begin(), same.end(), name) != same.end()) continue;
+    if (says(text, "(or " + name) || says(text, ", or " + name)) return true;
+  }
+  return false;
+}
+
+/// Sets of effects where nothing is missing, or something missing that is in none of the sets.
+bool sets_say_otherwise(const std::string& text, const Known&) {
+  const bool sets = says(text, "explain the legs about equally well") ||
+                    says(text, "explains the legs nearly as well");
+  if (sets && text.starts_with("nothing missing")) return true;
+  for (const std::string& line : lines_of(text)) {
+    if (!sets || !line.starts_with("missing: ")) continue;
+    const std::string name = line.substr(9, line.find(';') - 9);
+    if (!says(text.substr(text.find("the legs ")), name)) return true;
+  }
+  return false;
+}
+
 const std::vector<std::pair<const char*, Rule>>& rules() {
   static const std::vector<std::pair<const char*, Rule>> all{
       {"a gyro for a robot that has one",
@@ -147,7 +173,9 @@ const std::vector<std::pair<const char*, Rule>>& rules() {
        }},
       {"freedom gained by an effect", freedom_rises},
       {"two statuses", rival_has_two_statuses},
-      {"more than three rivals", names_too_many}};
+      {"more than three rivals", names_too_many},
+      {"told apart, and in its place", set_has_what_is_told_apart},
+      {"sets that say otherwise", sets_say_otherwise}};
   return all;
 }
 
@@ -249,7 +277,9 @@ TEST(Contradictions, AreFoundWhereTheyAre) {
       "missing: a\n  looks much like it: turn scrub (turn), cosine 0.99\n  turn scrub  x  cannot "
       "tell\n",
       "  looks the same here: a\n  looks the same here: b\n  looks the same here: c\n"
-      "  looks the same here: d\n  looks the same here: e\n"};
+      "  looks the same here: d\n  looks the same here: e\n",
+      "  looks much like it: turn scrub (turn), cosine 0.99\n    0.90  wheelbase (or turn scrub)\n",
+      "nothing missing\n\nThese sets of effects explain the legs about equally well\n"};
   ASSERT_EQ(wrong.size(), rules().size());
   for (std::size_t k = 0; k < wrong.size(); ++k) {
     EXPECT_TRUE(rules()[k].second(wrong[k], gyro)) << rules()[k].first;
