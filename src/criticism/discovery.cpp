@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/diagnosis.hpp"
 #include "criticism/effect_strength.hpp"
+#include "criticism/effect_trials.hpp"
 #include "criticism/place_uncertainty.hpp"
 #include "criticism/refits.hpp"
 #include "fit/fit_state.hpp"
 #include "linalg/dense.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/error.hpp"
-#include "validation/arrival_rise.hpp"
 #include "validation/dead_reckoned_horizons.hpp"
 #include "validation/held_out_legs.hpp"
 
@@ -21,14 +21,8 @@
 namespace trussmap {
 namespace {
 
-constexpr std::size_t kMostRivals = 4;
-constexpr double kDecisive = 6.0;      // of chi^2
-constexpr double kNoWorse = 1.05;      // of the arrival error
-constexpr double kBeyondChance = 1.5;  // standard errors
-constexpr double kBetter = 0.98;       // of the arrival error, to be preferred
 constexpr int kFewestWindows = 20;
-constexpr double kLess = 0.98;    // of the error after 30 s, to be better
-constexpr double kSame = 0.9999;  // cosine of what is the same effect
+constexpr double kLess = 0.98;  // of the error after 30 s, to be better
 
 /// m; nothing of too few windows.
 std::optional<double> shown(const HorizonError& error) {
@@ -42,103 +36,11 @@ bool is_common_motion(const Candidate& one) {
   return record != nullptr && record->common_motion;
 }
 
-/// The winner and those of its look-alikes that explain nearly as much, by their place among the
-/// findings.
-std::vector<std::size_t> contenders(const std::vector<Finding>& findings, std::size_t at) {
-  const Finding& winner = findings[at];
-  std::vector<std::size_t> chosen{at};
-  for (std::size_t k = 0; k < findings.size(); ++k) {
-    const Finding& one = findings[k];
-    if (k == at || chosen.size() > kMostRivals) continue;
-    const bool alike = std::any_of(
-        winner.look_alikes.begin(), winner.look_alikes.end(), [&](const LookAlike& other) {
-          // What is the same to first order, and acts elsewhere, may yet be told apart by a fit.
-          return other.effect.name == one.effect.name &&
-                 (other.cosine < kSame || one.effect.channel != winner.effect.channel);
-        });
-    if (alike && one.score > winner.score - 4.0 * kDecisive) chosen.push_back(k);
-  }
-  return chosen;
-}
-
-/// A finding, added and fitted.
-struct Trial {
-  Candidate candidate;
-  ModelFit fit;
-  std::optional<HeldOut> held_out = std::nullopt;  ///< once asked for; no legs where untold
-  std::shared_ptr<const HeldOutLegs> legs = nullptr;
-};
-
-bool was_fitted(const ModelFit& fit) {
-  return fit.effects.empty() || fit.effects.back().not_fitted.empty();
-}
-
-/// Of the trial that is taken: the winner's look-alikes, itself among them where another is
-/// taken. Those that were tried are as far behind as their fits are.
-std::vector<LookAlike> rivals_of(const std::vector<Trial>& trials, std::size_t taken,
-                                 const Finding& winner) {
-  const ModelFit& fit = trials[taken].fit;
-  const double noise = std::max(1.0, fit.chi2 / std::max(1, fit.dof));
-  std::vector<LookAlike> rivals = winner.look_alikes;
-  for (LookAlike& rival : rivals) {
-    if (rival.effect.name == trials[taken].candidate.effect.name) rival.effect = winner.effect;
-    for (const Trial& trial : trials) {
-      if (trial.candidate.effect.name != rival.effect.name) continue;
-      rival.behind = (chi2_of_all(trial.fit) - chi2_of_all(fit)) / noise;
-    }
-  }
-  return rivals;
-}
-
-double arrival_of(Trial& trial, const std::vector<DrivenRecording>& recordings,
-                  const LegOptions& legs) {
-  if (!trial.held_out) {
-    try {
-      trial.legs = std::make_shared<const HeldOutLegs>(recordings, trial.fit, legs);
-      trial.held_out = trial.legs->metrics();
-    } catch (const SolveError&) {  // what is left without those legs does not tell the effect
-      trial.held_out = HeldOut{};
-      trial.held_out->arrival_rms = std::numeric_limits<double>::infinity();
-    }
-  }
-  return trial.held_out->arrival_rms;
-}
-
-/// Than before, of the held-out legs, and beyond what chance makes of so few.
-bool predicts_worse(const HeldOut& before, Trial& trial,
-                    const std::vector<DrivenRecording>& recordings, const LegOptions& legs) {
-  if (!(before.arrival_rms > 0.0)) return false;
-  const double arrival = arrival_of(trial, recordings, legs);
-  if (arrival <= kNoWorse * before.arrival_rms) return false;
-  return std::isinf(arrival) || rise_in_sds(before, *trial.held_out) > kBeyondChance;
-}
-
 /// Of dead reckoning: with an effect that explains much, beyond chance only.
 bool reckons_worse(const HorizonChange& change, const Finding& with) {
   constexpr double kPlain = 1e-6;  // p
   return change.share > kNoWorse &&
          (with.p_adjusted > kPlain || change.rise_in_sds > kBeyondChance);
-}
-
-/// chi^2 decides where it can, else held-out legs, else the order of the diagnosis.
-std::size_t best_of(std::vector<Trial>& trials, const std::vector<DrivenRecording>& recordings,
-                    const LegOptions& legs) {
-  const auto cost = [](const Trial& one) {
-    return chi2_of_all(one.fit) - 2.0 * one.candidate.log_prior +
-           4.0 * static_cast<double>(one.candidate.effect.shape.size() +
-                                     one.candidate.parameters.size());
-  };
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < trials.size(); ++k) {
-    const double gain = cost(trials[best]) - cost(trials[k]);
-    if (gain < -kDecisive) continue;
-    if (gain < kDecisive && !(arrival_of(trials[k], recordings, legs) <
-                              kBetter * arrival_of(trials[best], recordings, legs))) {
-      continue;
-    }
-    best = k;
-  }
-  return best;
 }
 
 /// Adds what is found, one effect after the other.
