@@ -45,8 +45,8 @@ EffectParameters parameters_of(const Wanted& wanted, const std::vector<DrivenRec
   for (std::size_t k = 0; k < constants.size(); ++k) {
     if (wanted[k]) parameters.push_back(plain_effect(constants[k].channel, recordings, robot));
   }
-  for (EffectPattern& one : reference_alignment(recordings, robot, references.used,
-                                                options.sessions, references.found)) {
+  for (EffectPattern& one :
+       reference_alignment(recordings, references.used, options.sessions, references.found)) {
     parameters.push_back(std::move(one));
   }
   return parameters;
@@ -269,7 +269,7 @@ void require_positive(const std::vector<double>& g, const Wanted& wanted,
   for (std::size_t k = 0; k < constants.size(); ++k) {
     const double ratio = constants[k].ratio(g[k]);
     if (!wanted[k] || ratio > 0.0) continue;
-    const std::string why = truth ? describe(heading_offset(recordings, model.robot)) : "";
+    const std::string why = truth ? describe(heading_offset(recordings)) : "";
     throw SolveError(fmt::format(
         "not calibrated: {} would be {:.3g}, which no robot has; {}", constants[k].symbol, ratio,
         why.empty() ? "are left and right exchanged, or the signs of x or y?" : why));
@@ -289,7 +289,7 @@ WheelCalibrationOptions calibration_options(const CalibrationOptions& options) {
 
 WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
                                   const Model& model, const CalibrationOptions& options) {
-  require_well_formed(recordings);
+  require_well_formed(recordings, model.robot);
   return calibrate_wheels(recordings, model, calibration_options(options));
 }
 
