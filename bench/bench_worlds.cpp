@@ -98,7 +98,7 @@ DrivenRecording record_in(const World& world, const std::vector<Effect>& effects
   SimulatedDrive drive =
       simulate_drive(world.mesh, world.walk, world.style, world.robot, world.seed, acting);
   if (!world.surveyed) drive.recording.survey.clear();
-  return with_wheels(drive.recording, Robot());
+  return with_wheels(drive.recording, world.model.robot);
 }
 
 std::vector<Subject> subjects(const World& world) {

@@ -247,7 +247,7 @@ double drive_until(double t, const MotionRows& drive, std::size_t& row, OnlineOd
                    LegOdometry& leg) {
   double turned = 0.0;
   for (; row < drive.rows() && drive.t[row] <= t + 1e-9; ++row) {
-    WheelRow one{drive.duration(row), drive.wheel_left(row), drive.wheel_right(row)};
+    WheelRow one{drive.duration(row), drive.pair.left[row], drive.pair.right[row]};
     if (drive.has_compass()) one.compass = drive.heading[row];
     const CorrectedRow corrected = odometry.drive(one, {});
     turned += std::abs(corrected.motion.displacement.heading);

@@ -24,6 +24,24 @@ namespace trussmap {
 struct WheelTravel {
   double left = 0.0;   ///< m, signed
   double right = 0.0;  ///< m, signed
+
+  friend WheelTravel operator*(double share, const WheelTravel& of) {
+    return {share * of.left, share * of.right};
+  }
+};
+
+/// Of a body over a row, along its own axes, evenly as it turns.
+struct BodyMotion {
+  double forward = 0.0;   ///< m
+  double sideways = 0.0;  ///< m to the left
+  double turn = 0.0;      ///< rad to the left
+
+  friend BodyMotion operator*(double share, const BodyMotion& of) {
+    return {share * of.forward, share * of.sideways, share * of.turn};
+  }
+  friend BodyMotion operator+(const BodyMotion& a, const BodyMotion& b) {
+    return {a.forward + b.forward, a.sideways + b.sideways, a.turn + b.turn};
+  }
 };
 
 /// How wheels move the body over a row: (f, s, a) = forward, to the left [m], turn [rad] of the
@@ -117,13 +135,11 @@ struct Robot {
 
 /// How the gyro's reading of a row was taken into its motion (odometry/wheels_and_gyro.hpp).
 struct GyroShare {
-  double left = 0.0;      ///< m, the wheels' own travels
-  double right = 0.0;     ///< m
+  BodyMotion wheels;      ///< the wheels' own
   double excess = 0.0;    ///< rad by which the gyro's turn exceeds the wheels'; 0 without a reading
   double variance = 0.0;  ///< rad^2, of the gyro's turn; infinite without a reading
   double along = 0.0;     ///< m of travel that a radian of excess adds
   double turn = 0.0;      ///< share of the excess that is taken as turn, from 0 to 1
-  double sideways = 0.0;  ///< m to the left, the wheels' own
   double aside = 0.0;     ///< m to the left that a radian of excess adds
 };
 
@@ -139,13 +155,22 @@ struct WheelColumn {
   std::vector<double> gain = {};
 };
 
+/// Two wheels' travels, row by row.
+struct WheelPair {
+  std::vector<double> left;   ///< m, signed
+  std::vector<double> right;  ///< m, signed
+
+  [[nodiscard]] bool empty() const { return left.empty(); }
+  [[nodiscard]] WheelTravel at(std::size_t row) const { return {left[row], right[row]}; }
+};
+
 /// A drive as motion of its robot's body, row by row: by the wheels as with_wheels makes it; then
-/// steering effects and the gyro are taken in, once each. Forward and turn are held as what two
-/// wheels at the robot's wheelbase show of them (drive/body_motion.hpp).
+/// steering effects and the gyro are taken in, once each.
 struct MotionRows : DriveColumns {
-  std::vector<double> left;           ///< m
-  std::vector<double> right;          ///< m
+  std::vector<double> forward;        ///< m
+  std::vector<double> turn;           ///< rad to the left
   std::vector<double> sideways;       ///< m that the body moves to the left; empty = 0
+  WheelPair pair;                     ///< of two wheels: their own travels; empty of other drives
   std::vector<WheelColumn> wheels;    ///< the robot's own; empty of two wheels, and of a unicycle
   std::vector<std::string> unicycle;  ///< the columns of a unicycle; of others empty
   std::vector<GyroShare> gyro;        ///< once it is taken in
@@ -153,14 +178,15 @@ struct MotionRows : DriveColumns {
   /// without. Empty where none are taken in.
   std::vector<std::array<double, 2>> steered;
 
-  /// Whether `left` and `right` are two wheels, of which each can be wrong by itself.
+  /// Whether the robot has a left and a right wheel, of which each can be wrong by itself.
   [[nodiscard]] bool of_two_wheels() const { return wheels.empty() && unicycle.empty(); }
-  /// The wheels' own travels, m.
-  [[nodiscard]] double wheel_left(std::size_t row) const {
-    return gyro.empty() ? left[row] : gyro[row].left;
+  /// By the wheels, or by wheels and gyro together.
+  [[nodiscard]] BodyMotion motion(std::size_t row) const {
+    return {forward[row], slip(row), turn[row]};
   }
-  [[nodiscard]] double wheel_right(std::size_t row) const {
-    return gyro.empty() ? right[row] : gyro[row].right;
+  /// By the wheels alone.
+  [[nodiscard]] BodyMotion wheel_motion(std::size_t row) const {
+    return gyro.empty() ? motion(row) : gyro[row].wheels;
   }
   /// m to the left.
   [[nodiscard]] double slip(std::size_t row) const {
@@ -168,16 +194,12 @@ struct MotionRows : DriveColumns {
   }
   /// m, how far the body moves in the row, forwards, backwards or to the side.
   [[nodiscard]] double way(std::size_t row) const {
-    const double ahead = std::abs(0.5 * (left[row] + right[row]));
-    return sideways.empty() ? ahead : std::hypot(ahead, sideways[row]);
-  }
-  /// The wheels' own, m to the left.
-  [[nodiscard]] double wheel_slip(std::size_t row) const {
-    return gyro.empty() ? slip(row) : gyro[row].sideways;
+    return sideways.empty() ? std::abs(forward[row]) : std::hypot(forward[row], sideways[row]);
   }
   /// Whether no wheel moves in the row.
   [[nodiscard]] bool rests(std::size_t row) const {
-    return wheel_left(row) == 0.0 && wheel_right(row) == 0.0 && wheel_slip(row) == 0.0;
+    const BodyMotion own = wheel_motion(row);
+    return own.forward == 0.0 && own.turn == 0.0 && own.sideways == 0.0;
   }
 };
 
@@ -187,8 +209,10 @@ struct DrivenRecording : Observations {
 };
 
 /// The recording as motion of this robot, by the columns that the robot names (else left and
-/// right). Columns stay covariates. Throws InputError where a column is not there, a reading is
-/// impossible, or where the drive has no wheels at all.
+/// right): of two wheels with the robot's wheelbase in its turns, so that a robot with another one
+/// takes it anew. Columns stay covariates. Throws InputError where a column is not there, a reading
+/// is impossible, or where the drive has no wheels at all; std::invalid_argument where the robot
+/// has no wheelbase above 0 m.
 [[nodiscard]] DrivenRecording with_wheels(Recording recording, const Robot& robot);
 [[nodiscard]] std::vector<DrivenRecording> with_wheels(std::vector<Recording> recordings,
                                                        const Robot& robot);

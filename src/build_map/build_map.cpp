@@ -23,9 +23,10 @@ namespace {
 
 constexpr int kFewestSurveyed = 3;
 
-void check(const std::vector<DrivenRecording>& recordings, const BuildMapOptions& options) {
+void check(const std::vector<DrivenRecording>& recordings, const Robot& robot,
+           const BuildMapOptions& options) {
   if (recordings.empty()) throw std::invalid_argument("a map needs a recording");
-  require_well_formed(recordings);
+  require_well_formed(recordings, robot);
   if (!(options.gate.value_or(kAdjustmentGate) > 0.0) || !(options.min_drive >= 0.0)) {
     throw std::invalid_argument("an option of build_map is out of range");
   }
@@ -221,7 +222,7 @@ BuiltMap judged(BuiltMap built, const MapFitState& best, bool guided,
 
 BuiltMap build_map(const std::vector<DrivenRecording>& recordings, const Model& model,
                    const BuildMapOptions& options) {
-  check(recordings, options);
+  check(recordings, model.robot, options);
   if (are_paths_alone(recordings)) return build_paths(recordings, model, options);
   require_sightings(recordings);
   const MapFitState best = fit_map(recordings, model, options.gate);
@@ -238,7 +239,7 @@ BuiltMap build_map(const std::vector<DrivenRecording>& recordings, const Model& 
 BuiltMap extend_map(MapBuilder& builder, const DrivenRecording& recording, const Model& model,
                     MapAxes axes, const BuildMapOptions& options) {
   const std::vector<DrivenRecording> recordings{recording};
-  check(recordings, options);
+  check(recordings, model.robot, options);
   require_sightings(recordings);
   const MapFitState best = fit_map(recordings, model, options.gate);
   const std::vector<SessionGuide> guides = guides_of(best.fit);

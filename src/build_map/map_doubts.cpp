@@ -28,7 +28,8 @@ void doubt_units(const std::vector<DrivenRecording>& recordings, const Model& mo
     const MotionRows& drive = recording.drive;
     double path = 0.0;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
-      path += std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
+      const auto [left, right] = own_travel(drive, row, model.robot);
+      path += std::max(std::abs(left), std::abs(right));
     }
     const double speed = path / (drive.t.back() - drive.start());
     if (speed > kFast) {

@@ -83,7 +83,7 @@ WheelCalibrationOptions calibration_options(const CalibrationOptions& options) {
 
 WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
                                   const Model& model, const CalibrationOptions& options) {
-  require_well_formed(recordings);
+  require_well_formed(recordings, model.robot);
   return calibrate_wheels(recordings, model, calibration_options(options));
 }
 

@@ -27,8 +27,8 @@ double rms_heading_per_metre(const std::vector<DriveError>& errors) {
 namespace {
 
 /// m, of a row's wheels, each counted forwards.
-double mean_travel(const MotionRows& drive, std::size_t row) {
-  if (drive.wheels.empty()) return 0.5 * (std::abs(drive.left[row]) + std::abs(drive.right[row]));
+double mean_travel(const MotionRows& drive, std::size_t row, const Robot& robot) {
+  if (drive.wheels.empty()) return mean_travel(drive.motion(row), robot);
   double sum = 0.0;
   int count = 0;
   for (const WheelColumn& wheel : drive.wheels) {
@@ -60,13 +60,13 @@ std::vector<DriveError> errors_of_axle(const std::vector<DrivenRecording>& recor
     }
     const TruthRow& from = truth.front();
     const TruthRow& to = truth.back();
-    const Pose end = reckoned(drive, pose_of(from), from.t, to.t, model.robot);
+    const Pose end = reckoned(drive, pose_of(from), from.t, to.t);
     DriveError one;
     one.end = (end.position() - Vector2(to.x, to.y)).norm();
     one.heading = wrap_angle(end.heading - to.heading);
     // Metres as recorded, so that they are the same for every model.
     for (const DriveRow& row : rows_between(recordings[k].drive, from.t, to.t)) {
-      one.driven += row.part * mean_travel(recordings[k].drive, row.row);
+      one.driven += row.part * mean_travel(recordings[k].drive, row.row, model.robot);
     }
     result.push_back(one);
   }
@@ -85,7 +85,7 @@ std::vector<DriveError> drive_errors(const std::vector<DrivenRecording>& recordi
                                      const Model& model, const TruthAlignment& truth) {
   TruthAlignment mounting = truth;
   mounting.clocks.clear();
-  return errors_of_axle(aligned(recordings, mounting, model.robot), with_places_in_robot(model));
+  return errors_of_axle(aligned(recordings, mounting), with_places_in_robot(model));
 }
 
 }  // namespace trussmap

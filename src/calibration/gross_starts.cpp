@@ -3,7 +3,6 @@
 #include "calibration/gross_starts.hpp"
 
 #include "calibration/start_by_turns.hpp"
-#include "drive/body_motion.hpp"
 #include "drive/steered_motion.hpp"
 #include "odometry/merge.hpp"
 #include "statistics/median.hpp"
@@ -99,13 +98,12 @@ std::vector<TimedMark> thinned(const std::vector<TimedMark>& marks) {
   return kept;
 }
 
-void add_steps(const MotionRows& drive, double from, double to, const Robot& robot,
-               std::vector<BodyMotion>& steps) {
+void add_steps(const MotionRows& drive, double from, double to, std::vector<BodyMotion>& steps) {
   constexpr double kStraight = 0.05;  // rad
   BodyMotion sum;
   bool any = false;
   for (const DriveRow& row : rows_between(drive, from, to)) {
-    const BodyMotion body = row.part * body_motion(drive, row.row, robot);
+    const BodyMotion body = motion_of(drive, row);
     sum = {sum.forward + body.forward, sum.sideways + body.sideways, sum.turn + body.turn};
     any = true;
     if (std::abs(sum.turn) < kStraight) continue;
@@ -157,7 +155,7 @@ Course course_of(const DrivenRecording& recording, const Robot& robot) {
   double from = drive.start();
   for (TimedMark& one : thinned(marks_of(recording, robot.mounted))) {
     if (one.t < drive.start() || one.t > drive.t.back()) continue;
-    add_steps(drive, from, one.t, robot, course.steps);
+    add_steps(drive, from, one.t, course.steps);
     if (course.steps.size() > kMostSteps) break;
     from = one.t;
     one.mark.step = course.steps.size();

@@ -27,7 +27,7 @@ struct MeanDirections {
   double weight = 0.0;  // m
 };
 
-void add_pairs(MeanDirections& sum, const DrivenRecording& recording, const Robot& robot) {
+void add_pairs(MeanDirections& sum, const DrivenRecording& recording) {
   const MotionRows& drive = recording.drive;
   const std::vector<double> path = driven_path(drive);
   std::optional<TruthRow> from;
@@ -37,7 +37,7 @@ void add_pairs(MeanDirections& sum, const DrivenRecording& recording, const Robo
     const double at = path_at(drive, path, row.t);
     if (from && at - start < kWay) continue;
     if (from) {
-      const Vector2 driven = reckoned(drive, {}, from->t, row.t, robot).position();
+      const Vector2 driven = reckoned(drive, {}, from->t, row.t).position();
       const Vector2 moved(row.x - from->x, row.y - from->y);
       const double distance = moved.norm();
       if (driven.norm() > kStraightest * kWay && distance > kStraightest * kWay) {
@@ -54,10 +54,10 @@ void add_pairs(MeanDirections& sum, const DrivenRecording& recording, const Robo
 
 }  // namespace
 
-HeadingOffset heading_offset(const std::vector<DrivenRecording>& recordings, const Robot& robot) {
+HeadingOffset heading_offset(const std::vector<DrivenRecording>& recordings) {
   MeanDirections sum;
   for (const DrivenRecording& recording : recordings) {
-    if (!recording.truth.empty()) add_pairs(sum, recording, robot);
+    if (!recording.truth.empty()) add_pairs(sum, recording);
   }
   HeadingOffset result;
   if (!(sum.weight > 0.0)) return result;

@@ -28,8 +28,7 @@ struct HeadingOffset {
 };
 
 /// By the nominal wheelbase. An agreement of 0 where no two truth rows lie far enough apart.
-[[nodiscard]] HeadingOffset heading_offset(const std::vector<DrivenRecording>& recordings,
-                                           const Robot& robot);
+[[nodiscard]] HeadingOffset heading_offset(const std::vector<DrivenRecording>& recordings);
 
 /// What is wrong with the truth's heading and how to mend it, one sentence; empty where nothing
 /// stands out.

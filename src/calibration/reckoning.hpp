@@ -4,7 +4,6 @@
 // Dead reckoning by the wheels alone, from a pose at one time of a drive to another time.
 #pragma once
 
-#include "drive/body_motion.hpp"
 #include "odometry/merge.hpp"
 #include "odometry/row_reckoner.hpp"
 #include "trussmap/planar.hpp"
@@ -13,11 +12,9 @@
 namespace trussmap {
 
 /// `from` <= `to`, s; times outside of the drive are cut to it.
-[[nodiscard]] inline Pose reckoned(const MotionRows& drive, Pose pose, double from, double to,
-                                   const Robot& robot) {
+[[nodiscard]] inline Pose reckoned(const MotionRows& drive, Pose pose, double from, double to) {
   for (const DriveRow& row : rows_between(drive, from, to)) {
-    pose = compose(pose, displacement_of(body_motion(travel_of(drive, row), robot,
-                                                     row.part * drive.slip(row.row))));
+    pose = compose(pose, displacement_of(motion_of(drive, row)));
   }
   return pose;
 }

@@ -23,27 +23,27 @@ constexpr double kUselessYaw = 0.1;    // rad
 
 /// Where the robot was `late` seconds before time t, seen from where it is at t; at rest outside
 /// of the drive.
-Pose way_back(const MotionRows& drive, double t, double late, const Robot& robot) {
+Pose way_back(const MotionRows& drive, double t, double late) {
   const auto inside = [&drive](double at) { return std::clamp(at, drive.start(), drive.t.back()); };
   const double from = inside(std::min(t, t - late));
   const double to = inside(std::max(t, t - late));
   if (!(to > from)) return {};
-  const Pose way = segment_motion(segment_rows(drive, from, to, robot)).displacement;
+  const Pose way = segment_motion(segment_rows(drive, from, to)).displacement;
   return late > 0.0 ? inverse(way) : way;
 }
 
 /// What one second of lateness does to a truth row: the way back over the lateness of an earlier
 /// fit, which is exact there; without one, that of a moment about the row.
-ViewPattern per_second(const MotionRows& drive, double t, double late, const Robot& robot) {
+ViewPattern per_second(const MotionRows& drive, double t, double late) {
   constexpr double kMoment = 0.15;     // s: longer than a row's jitter
   constexpr double kTellable = 0.005;  // s
   Pose back;
   double seconds = late;
   if (std::abs(late) < kTellable) {
-    back = way_back(drive, t + 0.5 * kMoment, kMoment, robot);
+    back = way_back(drive, t + 0.5 * kMoment, kMoment);
     seconds = kMoment;
   } else {
-    back = way_back(drive, t, late, robot);
+    back = way_back(drive, t, late);
   }
   ViewPattern result;
   result.ahead = back.x / seconds;
@@ -104,16 +104,14 @@ EffectPattern everywhere(const char* name, const ViewPattern& unit, double prior
 template <typename Row, typename LateAt>
 EffectPattern lateness_of(int session, const std::vector<DrivenRecording>& recordings,
                           std::vector<Row> Observations::*rows, Patterns patterns,
-                          const Robot& robot, const std::vector<int>& sessions,
-                          const LateAt& late_at) {
+                          const std::vector<int>& sessions, const LateAt& late_at) {
   EffectPattern result;
   result.prior_sd = kLateSd;
   (result.*patterns).resize(recordings.size());
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     if (session_of(sessions, k) != session) continue;
     for (const Row& row : recordings[k].*rows) {
-      (result.*patterns)[k].push_back(
-          per_second(recordings[k].drive, row.t, late_at(row.t), robot));
+      (result.*patterns)[k].push_back(per_second(recordings[k].drive, row.t, late_at(row.t)));
     }
   }
   return result;
@@ -137,7 +135,7 @@ constexpr ViewPattern kAhead{.ahead = 1.0};
 constexpr ViewPattern kLeft{.left = 1.0};
 constexpr ViewPattern kTurned{.heading = 1.0};
 
-EffectParameters of_truth(const std::vector<DrivenRecording>& recordings, const Robot& robot,
+EffectParameters of_truth(const std::vector<DrivenRecording>& recordings,
                           const std::vector<int>& sessions, const TruthAlignment& prior) {
   EffectParameters parameters;
   const std::map<int, TruthClock> clocks = clocks_of(recordings, &Observations::truth, sessions);
@@ -152,8 +150,8 @@ EffectParameters of_truth(const std::vector<DrivenRecording>& recordings, const 
   for (const auto& [session, start] : clocks) {
     const int number = session;
     EffectPattern late =
-        lateness_of(number, recordings, &Observations::truth, &EffectPattern::truths, robot,
-                    sessions, [&](double t) { return lateness(prior, number, t); });
+        lateness_of(number, recordings, &Observations::truth, &EffectPattern::truths, sessions,
+                    [&](double t) { return lateness(prior, number, t); });
     late.name = "truth late";
     EffectPattern clock = drift_of(late, recordings, start.start);
     parameters.push_back(std::move(late));
@@ -162,7 +160,7 @@ EffectParameters of_truth(const std::vector<DrivenRecording>& recordings, const 
   return parameters;
 }
 
-EffectParameters of_fixes(const std::vector<DrivenRecording>& recordings, const Robot& robot,
+EffectParameters of_fixes(const std::vector<DrivenRecording>& recordings,
                           const std::vector<int>& sessions, const FixAlignment& prior) {
   EffectParameters parameters;
   const std::map<int, TruthClock> clocks = clocks_of(recordings, &Observations::fixes, sessions);
@@ -176,8 +174,8 @@ EffectParameters of_fixes(const std::vector<DrivenRecording>& recordings, const 
     const auto known = prior.late.find(session);
     const double so_far = known == prior.late.end() ? 0.0 : known->second;
     EffectPattern late =
-        lateness_of(session, recordings, &Observations::fixes, &EffectPattern::fixes, robot,
-                    sessions, [so_far](double) { return so_far; });
+        lateness_of(session, recordings, &Observations::fixes, &EffectPattern::fixes, sessions,
+                    [so_far](double) { return so_far; });
     late.name = "fixes late";
     parameters.push_back(std::move(late));
   }
@@ -247,15 +245,14 @@ ReferencesUsed references_in(const std::vector<DrivenRecording>& recordings,
 }
 
 EffectParameters reference_alignment(const std::vector<DrivenRecording>& recordings,
-                                     const Robot& robot, const ReferencesUsed& used,
-                                     const std::vector<int>& sessions,
+                                     const ReferencesUsed& used, const std::vector<int>& sessions,
                                      const ReferenceAlignment& prior) {
   EffectParameters parameters;
   const auto add = [&parameters](EffectParameters more) {
     for (EffectPattern& one : more) parameters.push_back(std::move(one));
   };
-  if (used.truth) add(of_truth(recordings, robot, sessions, prior.truth));
-  if (used.fixes) add(of_fixes(recordings, robot, sessions, prior.fixes));
+  if (used.truth) add(of_truth(recordings, sessions, prior.truth));
+  if (used.fixes) add(of_fixes(recordings, sessions, prior.fixes));
   if (used.sensor) {
     add(of_mounting(recordings, &Observations::sightings, &EffectPattern::sightings));
   }
@@ -308,12 +305,12 @@ Mountings with_found(Mountings mounted, const ReferenceAlignment& found) {
 }
 
 std::vector<DrivenRecording> aligned(const std::vector<DrivenRecording>& recordings,
-                                     const TruthAlignment& alignment, const Robot& robot) {
+                                     const TruthAlignment& alignment) {
   std::vector<DrivenRecording> result = recordings;
   for (std::size_t k = 0; k < result.size(); ++k) {
     for (TruthRow& row : result[k].truth) {
       const double late = lateness(alignment, static_cast<int>(k), row.t);
-      const Pose back = way_back(result[k].drive, row.t, late, robot);
+      const Pose back = way_back(result[k].drive, row.t, late);
       row.heading = wrap_angle(row.heading - alignment.heading - back.heading);
       const Vector2 lever =
           rotation(row.heading) * Vector2(alignment.ahead + back.x, alignment.left + back.y);

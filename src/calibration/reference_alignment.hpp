@@ -45,7 +45,7 @@ struct ReferencesUsed {
 /// near 0. None of what no recording has or is not used. `sessions`: of each recording, where
 /// several are segments of one drive; empty: 0, 1, 2 ... `prior`: what an earlier fit has found.
 [[nodiscard]] EffectParameters reference_alignment(const std::vector<DrivenRecording>& recordings,
-                                                   const Robot& robot, const ReferencesUsed& used,
+                                                   const ReferencesUsed& used,
                                                    const std::vector<int>& sessions,
                                                    const ReferenceAlignment& prior = {});
 
@@ -63,7 +63,6 @@ struct ReferencesUsed {
 /// Recordings, session after session, with their truth moved to where it shows the axle's centre
 /// at the time it is stamped.
 [[nodiscard]] std::vector<DrivenRecording> aligned(const std::vector<DrivenRecording>& recordings,
-                                                   const TruthAlignment& alignment,
-                                                   const Robot& robot);
+                                                   const TruthAlignment& alignment);
 
 }  // namespace trussmap

@@ -3,7 +3,6 @@
 #include "calibration/sensor_places.hpp"
 
 #include "calibration/reckoning.hpp"
-#include "drive/body_motion.hpp"
 #include "odometry/merge.hpp"
 #include "statistics/median.hpp"
 #include "statistics/thinned.hpp"
@@ -55,7 +54,7 @@ double error_of(double way, double turned, double reach) {
   return kReadingError + kTravelError * (way + turned * reach);
 }
 
-std::vector<SeenMotion> motions_of_loops(const DrivenRecording& recording, const Robot& robot) {
+std::vector<SeenMotion> motions_of_loops(const DrivenRecording& recording) {
   constexpr double kLongest = 5.0;  // s: further, and dead reckoning tells little
   std::vector<SeenMotion> result;
   const std::size_t every = 1 + recording.loops.size() / kMostMotions;
@@ -63,7 +62,7 @@ std::vector<SeenMotion> motions_of_loops(const DrivenRecording& recording, const
     const Loop& loop = recording.loops[k];
     if (!(loop.t2 > loop.t) || loop.t2 - loop.t > kLongest) continue;
     if (loop.t < recording.drive.start() || loop.t2 > recording.drive.t.back()) continue;
-    const Pose moved = reckoned(recording.drive, {}, loop.t, loop.t2, robot);
+    const Pose moved = reckoned(recording.drive, {}, loop.t, loop.t2);
     const Vector2 seen(loop.dx, loop.dy);
     result.push_back(
         {seen, moved, error_of(moved.position().norm(), std::abs(moved.heading), seen.norm())});
@@ -72,7 +71,7 @@ std::vector<SeenMotion> motions_of_loops(const DrivenRecording& recording, const
 }
 
 /// Of a landmark that is seen again: seen from where it was, less the same turned.
-std::vector<SeenMotion> motions_of_sightings(const DrivenRecording& recording, const Robot& robot) {
+std::vector<SeenMotion> motions_of_sightings(const DrivenRecording& recording) {
   constexpr double kLongest = 120.0;  // s
   struct Before {
     double t = 0.0;
@@ -87,7 +86,7 @@ std::vector<SeenMotion> motions_of_sightings(const DrivenRecording& recording, c
   for (const Sighting& sighting : recording.sightings) {
     if (!sighting.locates() || sighting.t < now.t) continue;
     for (const DriveRow& row : rows_between(recording.drive, now.t, sighting.t)) {
-      const BodyMotion body = row.part * body_motion(recording.drive, row.row, robot);
+      const BodyMotion body = motion_of(recording.drive, row);
       now.pose = compose(now.pose, displacement_of(body));
       now.way += std::hypot(body.forward, body.sideways);
       now.turned += std::abs(body.turn);
@@ -141,12 +140,11 @@ std::optional<Mounting> place_by(const std::vector<SeenMotion>& motions) {
   return place;
 }
 
-std::optional<Mounting> place_by(const std::vector<DrivenRecording>& recordings, const Robot& robot,
-                                 std::vector<SeenMotion> (*motions_of)(const DrivenRecording&,
-                                                                       const Robot&)) {
+std::optional<Mounting> place_by(const std::vector<DrivenRecording>& recordings,
+                                 std::vector<SeenMotion> (*motions_of)(const DrivenRecording&)) {
   std::vector<SeenMotion> all;
   for (const DrivenRecording& one : recordings) {
-    const std::vector<SeenMotion> own = motions_of(one, robot);
+    const std::vector<SeenMotion> own = motions_of(one);
     all.insert(all.end(), own.begin(), own.end());
   }
   return place_by(trussmap::thinned(std::move(all), kMostMotions));
@@ -185,8 +183,8 @@ Mounting stated_place(const Mountings& stated, std::string_view of) {
 
 Mountings started_places(const std::vector<DrivenRecording>& recordings, const Robot& robot) {
   Mountings mounted = robot.mounted;
-  if (!mounted.scanner) mounted.scanner = place_by(recordings, robot, motions_of_loops);
-  if (!mounted.sensor) mounted.sensor = place_by(recordings, robot, motions_of_sightings);
+  if (!mounted.scanner) mounted.scanner = place_by(recordings, motions_of_loops);
+  if (!mounted.sensor) mounted.sensor = place_by(recordings, motions_of_sightings);
   return mounted;
 }
 

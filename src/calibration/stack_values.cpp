@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/stack_values.hpp"
 
+#include "drive/body_motion.hpp"
 #include "drive/wheel_kinematics.hpp"
 #include "trussmap/dead_reckoning.hpp"
 
@@ -198,7 +199,7 @@ RobotConstants with_velocity_variances(RobotConstants constants,
     double from = drive.start();
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       const double duration = drive.t[row] - from;
-      const double travel = 0.5 * (std::abs(drive.left[row]) + std::abs(drive.right[row]));
+      const double travel = mean_travel(drive.motion(row), model.robot);
       if (row % step == 0 && travel > kMoves * duration) {
         const PoseEstimate moved =
             dead_reckon({}, drive, from, drive.t[row], model.robot, model.noise);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/start_by_turns.hpp"
 
-#include "drive/body_motion.hpp"
 #include "odometry/merge.hpp"
 #include "trussmap/planar.hpp"
 
@@ -28,21 +27,21 @@ std::size_t rows_of_stretch(std::size_t rows) {
   return std::max<std::size_t>(1, rows / kStretches);
 }
 
-Turned turned_by_wheels(const MotionRows& drive, double from, double to, const Robot& robot) {
+Turned turned_by_wheels(const MotionRows& drive, double from, double to) {
   Turned result;
   for (const DriveRow& row : rows_between(drive, from, to)) {
-    const BodyMotion body = row.part * body_motion(drive, row.row, robot);
+    const BodyMotion body = motion_of(drive, row);
     result.by += Eigen::Vector3d(body.turn, body.forward, 0.0);
   }
   return result;
 }
 
-void add_turns_of_gyro(const MotionRows& drive, const Robot& robot, std::vector<Turned>& turns) {
+void add_turns_of_gyro(const MotionRows& drive, std::vector<Turned>& turns) {
   const std::size_t stretch = rows_of_stretch(drive.rows());
   Turned sum;
   for (std::size_t row = 0, taken = 0; row < drive.yaw_rate.size(); ++row) {
     if (std::isnan(drive.yaw_rate[row])) continue;
-    const BodyMotion body = body_motion(drive, row, robot);
+    const BodyMotion body = drive.motion(row);
     sum.by += Eigen::Vector3d(body.turn, body.forward, drive.duration(row));
     sum.measured += drive.yaw_rate[row] * drive.duration(row);
     if (++taken % stretch == 0) turns.push_back(std::exchange(sum, {}));
@@ -50,7 +49,7 @@ void add_turns_of_gyro(const MotionRows& drive, const Robot& robot, std::vector<
 }
 
 /// Headings that are so close to each other that less than half a turn lies between.
-void add_turns_of_headings(const MotionRows& drive, const Robot& robot,
+void add_turns_of_headings(const MotionRows& drive,
                            const std::vector<std::pair<double, double>>& headings,
                            std::vector<Turned>& turns) {
   const std::size_t stretch = rows_of_stretch(headings.size());
@@ -60,7 +59,7 @@ void add_turns_of_headings(const MotionRows& drive, const Robot& robot,
     if (k > 0) measured += wrap_angle(headings[k].second - headings[k - 1].second);
     if (k % stretch != 0) continue;
     if (k > 0) {
-      turns.push_back(turned_by_wheels(drive, from, headings[k].first, robot));
+      turns.push_back(turned_by_wheels(drive, from, headings[k].first));
       turns.back().measured = measured;
     }
     from = headings[k].first;
@@ -68,22 +67,22 @@ void add_turns_of_headings(const MotionRows& drive, const Robot& robot,
   }
 }
 
-std::vector<Turned> turns_of(const std::vector<DrivenRecording>& recordings, const Robot& robot) {
+std::vector<Turned> turns_of(const std::vector<DrivenRecording>& recordings) {
   std::vector<Turned> turns;
   for (const DrivenRecording& one : recordings) {
     const MotionRows& drive = one.drive;
-    if (drive.has_gyro()) add_turns_of_gyro(drive, robot, turns);
+    if (drive.has_gyro()) add_turns_of_gyro(drive, turns);
     std::vector<std::pair<double, double>> headings;
     for (std::size_t row = 0; row < drive.heading.size(); ++row) {
       if (!std::isfinite(drive.heading[row])) continue;
       headings.emplace_back(drive.t[row], drive.heading[row]);
     }
-    add_turns_of_headings(drive, robot, std::exchange(headings, {}), turns);
+    add_turns_of_headings(drive, std::exchange(headings, {}), turns);
     for (const TruthRow& row : one.truth) {
       if (row.t < drive.start() || row.t > drive.t.back()) continue;
       headings.emplace_back(row.t, row.heading);
     }
-    add_turns_of_headings(drive, robot, headings, turns);
+    add_turns_of_headings(drive, headings, turns);
   }
   return turns;
 }
@@ -117,7 +116,7 @@ std::optional<GrossStart> start_by_turns(const std::vector<DrivenRecording>& rec
                                          const Robot& robot) {
   constexpr std::size_t kFewest = 10;
   constexpr double kTurning = 1.0;  // rad, in all
-  const std::vector<Turned> turns = turns_of(recordings, robot);
+  const std::vector<Turned> turns = turns_of(recordings);
   double most = 0.0;
   for (const Turned& one : turns) most += std::abs(one.by[0]);
   if (turns.size() < kFewest || most < kTurning) return std::nullopt;

@@ -19,6 +19,7 @@ DrivenRecording cut(const DrivenRecording& whole, double from, double to) {
   DrivenRecording part;
   part.name = whole.name;
   part.survey = whole.survey;
+  part.drive.unicycle = whole.drive.unicycle;
   for (const Covariate& covariate : whole.drive.covariates) {
     part.drive.covariates.push_back({covariate.name, {}});
   }
@@ -29,8 +30,12 @@ DrivenRecording cut(const DrivenRecording& whole, double from, double to) {
     const double t = whole.drive.t[row];
     if (t <= from + kSameTime || t > to + kSameTime) continue;
     part.drive.t.push_back(t);
-    part.drive.left.push_back(whole.drive.left[row]);
-    part.drive.right.push_back(whole.drive.right[row]);
+    part.drive.forward.push_back(whole.drive.forward[row]);
+    part.drive.turn.push_back(whole.drive.turn[row]);
+    if (!whole.drive.pair.empty()) {
+      part.drive.pair.left.push_back(whole.drive.pair.left[row]);
+      part.drive.pair.right.push_back(whole.drive.pair.right[row]);
+    }
     if (!whole.drive.sideways.empty()) part.drive.sideways.push_back(whole.drive.sideways[row]);
     for (std::size_t k = 0; k < whole.drive.wheels.size(); ++k) {
       const WheelColumn& wheel = whole.drive.wheels[k];
@@ -53,7 +58,7 @@ DrivenRecording cut(const DrivenRecording& whole, double from, double to) {
 }
 
 /// The heading at truth row `at` by all rows of the second before it.
-double settled_heading(const DrivenRecording& recording, std::size_t at, const Robot& robot) {
+double settled_heading(const DrivenRecording& recording, std::size_t at) {
   constexpr double kSecond = 1.0;  // s
   const TruthRow& last = recording.truth[at];
   double sum = 0.0;
@@ -61,7 +66,7 @@ double settled_heading(const DrivenRecording& recording, std::size_t at, const R
   for (std::size_t k = at; recording.truth[k].t > last.t - kSecond; --k) {
     const TruthRow& row = recording.truth[k];
     if (row.t < recording.drive.start()) break;
-    const Pose there = reckoned(recording.drive, pose_of(row), row.t, last.t, robot);
+    const Pose there = reckoned(recording.drive, pose_of(row), row.t, last.t);
     sum += wrap_angle(there.heading - last.heading);
     ++rows;
     if (k == 0) break;
@@ -128,9 +133,8 @@ ArrivalErrors arrival_errors(const std::vector<DrivenRecording>& recordings,
     const DrivenRecording& recording = corrected[idx(leg.session)];
     const TruthRow& from = recording.truth[leg.from];
     const TruthRow& to = recording.truth[leg.to];
-    const double heading = settled_heading(recording, leg.from, model.robot);
-    const Pose end =
-        reckoned(recording.drive, {from.x, from.y, heading}, from.t, to.t, model.robot);
+    const double heading = settled_heading(recording, leg.from);
+    const Pose end = reckoned(recording.drive, {from.x, from.y, heading}, from.t, to.t);
     result.distances.push_back((end.position() - Vector2(to.x, to.y)).norm());
   }
   return result;

@@ -53,7 +53,7 @@ CalibrationValidation by_blocks(const std::vector<DrivenRecording>& recordings,
   how.sessions = training_segments.sessions;
   const auto other = calibration_by(training_segments.recordings, model, how);
   if (!other) return result;
-  predict(result, aligned(recordings, other->truth, model.robot), legs, model, other->model);
+  predict(result, aligned(recordings, other->truth), legs, model, other->model);
   result.scheme = HoldoutScheme::blocks;
   return result;
 }
@@ -86,7 +86,7 @@ CalibrationValidation by_recordings(const std::vector<DrivenRecording>& recordin
     const auto other = calibration_by(others, model, how);
     if (!other) continue;
     const TruthAlignment alignment = mean_alignment(other->truth, recordings[k].drive.start());
-    predict(result, aligned({recordings[k]}, alignment, model.robot), own, model, other->model);
+    predict(result, aligned({recordings[k]}, alignment), own, model, other->model);
     result.scheme = HoldoutScheme::recordings;
   }
   return result;
@@ -118,7 +118,7 @@ CalibrationGain CalibrationValidation::gain() const {
 
 CalibrationValidation validate_calibration(const std::vector<DrivenRecording>& recordings,
                                            const Model& model, const CalibrationOptions& options) {
-  require_well_formed(recordings);
+  require_well_formed(recordings, model.robot);
   if (!options.truth || !(options.holdout > 0.0)) return {};
   WheelCalibrationOptions how = calibration_options(options);
   how.noise = false;

@@ -46,8 +46,8 @@ EffectParameters parameters_of(const Wanted& wanted, const std::vector<DrivenRec
   for (std::size_t k = 0; k < constants.size(); ++k) {
     if (wanted[k]) parameters.push_back(plain_effect(constants[k].channel, recordings, robot));
   }
-  for (EffectPattern& one : reference_alignment(recordings, robot, references.used,
-                                                options.sessions, references.found)) {
+  for (EffectPattern& one :
+       reference_alignment(recordings, references.used, options.sessions, references.found)) {
     parameters.push_back(std::move(one));
   }
   return parameters;
@@ -273,7 +273,7 @@ void require_positive(const std::vector<double>& g, const Wanted& wanted,
   for (std::size_t k = 0; k < constants.size(); ++k) {
     const double ratio = constants[k].ratio(g[k]);
     if (!wanted[k] || ratio > 0.0) continue;
-    const std::string why = truth ? describe(heading_offset(recordings, model.robot)) : "";
+    const std::string why = truth ? describe(heading_offset(recordings)) : "";
     throw SolveError(fmt::format(
         "not calibrated: {} would be {:.3g}, which no robot has; {}", constants[k].symbol, ratio,
         why.empty() ? "are left and right exchanged, or the signs of x or y?" : why));

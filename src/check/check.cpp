@@ -4,6 +4,7 @@
 
 #include "check/findings.hpp"
 #include "check/turn_signs.hpp"
+#include "drive/body_motion.hpp"
 #include "drive/legs.hpp"
 #include "drive/well_formed.hpp"
 #include "geometry/units.hpp"
@@ -127,7 +128,7 @@ void check_wheelbase(Checked& checked, const Model& model, const std::string& mo
   if (turns.sign == 0 || checked.wrong.contains("left") || checked.wrong.contains("heading")) {
     return;
   }
-  const double times = 1.0 / (std::abs(turns.slope) * model.robot.wheelbase);
+  const double times = 1.0 / std::abs(turns.slope);
   if (std::abs(std::log(times)) < std::log(kWheelbaseOff)) return;
   if (wheelbase) {
     add(joined("the wheelbase is ", figure(stated, "m"),
@@ -155,7 +156,7 @@ bool same_session(const DrivenRecording& a, const DrivenRecording& b) {
   const auto same_truth = [](const TruthRow& one, const TruthRow& other) {
     return one.x == other.x && one.y == other.y && one.heading == other.heading;
   };
-  return a.drive.left == b.drive.left && a.drive.right == b.drive.right &&
+  return a.drive.forward == b.drive.forward && a.drive.turn == b.drive.turn &&
          std::equal(a.drive.heading.begin(), a.drive.heading.end(), b.drive.heading.begin(),
                     b.drive.heading.end(), same_reading) &&
          std::equal(a.sightings.begin(), a.sightings.end(), b.sightings.begin(), b.sightings.end(),
@@ -184,14 +185,14 @@ bool never_negative(const MotionRows& drive) {
       return !one.steers && std::any_of(one.reading.begin(), one.reading.end(), negative);
     });
   }
-  return std::none_of(drive.left.begin(), drive.left.end(), negative) &&
-         std::none_of(drive.right.begin(), drive.right.end(), negative);
+  return std::none_of(drive.pair.left.begin(), drive.pair.left.end(), negative) &&
+         std::none_of(drive.pair.right.begin(), drive.pair.right.end(), negative);
 }
 
 /// Where the wheels agree with nothing as they are: with one of them negated?
 void check_lone_wheel(Checked& checked, bool by_survey, bool by_truth) {
   for (const WheelMistake mistake : {WheelMistake::left_negated, WheelMistake::right_negated}) {
-    const Track track(checked.recording.drive, checked.wheelbase, mistake);
+    const Track track(checked.recording.drive, mistake, checked.wheelbase);
     const bool survey = by_survey && survey_agreement(checked, track).by_way > 0;
     const bool truth = by_truth && truth_agreement(checked, track).by_heading > 0;
     if (!survey && !truth) continue;
@@ -261,8 +262,18 @@ void check_contradicted_wheels(Checked& checked, const TurnAgreement& turns,
               "record travels with their sign: a turn on the spot has one wheel going backwards");
 }
 
-/// Of one recording. Returns what its compass says of the wheels.
-TurnAgreement check_recording(Checked& checked) {
+/// Two wheels are so far apart, m: by that they turn the drive from now on, which is the checked
+/// recording's.
+void take_wheelbase(double wheelbase, Checked& checked, MotionRows& drive) {
+  checked.wheelbase = wheelbase;
+  checked.wheelbase_known = true;
+  for (std::size_t row = 0; row < drive.pair.left.size(); ++row) {
+    drive.turn[row] = body_motion(drive.pair.at(row), wheelbase).turn;
+  }
+}
+
+/// Of one recording, with its drive. Returns what its compass says of the wheels.
+TurnAgreement check_recording(Checked& checked, MotionRows& drive) {
   const DrivenRecording& recording = checked.recording;
   check_names(checked);
   check_case(checked);
@@ -277,11 +288,10 @@ TurnAgreement check_recording(Checked& checked) {
   }
   const TurnAgreement turns = check_compass(checked);
   if (!checked.wheelbase_known && turns.sign != 0) {
-    checked.wheelbase = 1.0 / std::abs(turns.slope);
-    checked.wheelbase_known = true;
+    take_wheelbase(checked.wheelbase / std::abs(turns.slope), checked, drive);
   }
   if (!checked.wheelbase_known) return turns;
-  const Track track(recording.drive, checked.wheelbase);
+  const Track track(recording.drive);
   check_no_travel(checked, track);
   check_no_turning(checked, track);
   SurveyAgreement surveyed = survey_agreement(checked, track);
@@ -324,7 +334,7 @@ TurnAgreement check_recording(Checked& checked) {
     check_labels(track);
   } else {
     check_labels(
-        Track(recording.drive, checked.wheelbase, WheelMistake::none, Heading::of_compass));
+        Track(recording.drive, WheelMistake::none, checked.wheelbase, Heading::of_compass));
   }
   return turns;
 }
@@ -389,11 +399,11 @@ std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordi
   CheckFindings findings;
   if (recordings.empty()) return findings;
   const bool by_columns = model != nullptr && !model->robot.columns.empty();
-  const Robot robot = by_columns ? model->robot : Robot();
+  const Robot robot = model != nullptr ? model->robot : Robot();
   std::vector<DrivenRecording> all;
   all.reserve(recordings.size());
   for (const Recording& one : recordings) all.push_back(by_its_columns(one, robot));
-  for (const DrivenRecording& one : all) require_well_formed(one);
+  for (const DrivenRecording& one : all) require_well_formed(one, robot);
   if (model != nullptr && !model->robot.wheelbase_stated) {
     findings.push_back(
         {model_file, "wheelbase", "no wheelbase",
@@ -411,13 +421,13 @@ std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordi
     }
     Checked checked{all[k], findings};
     checked.wheelbase_known = model != nullptr && model->robot.wheelbase_stated;
-    checked.wheelbase = model != nullptr ? model->robot.wheelbase : Robot().wheelbase;
+    checked.wheelbase = robot.wheelbase;
     if (by_columns && model->robot.drive != DriveKind::differential) {
       checked.robot = &model->robot;
       if (steers_in_degrees(recordings[k], model->robot)) add_degrees(checked);
     }
     check_fix_unit(checked);
-    const TurnAgreement turns = check_recording(checked);
+    const TurnAgreement turns = check_recording(checked, all[k].drive);
     if (model == nullptr || !model->robot.wheelbase_stated || said) continue;
     const std::size_t before = findings.size();
     check_wheelbase(checked, *model, model_file, turns, findings);

@@ -105,7 +105,7 @@ bool steers_in_degrees(const Recording& recording, const Robot& robot) {
 void check_columns(Checked& checked) {
   if (checked.wrong.contains("left") || checked.wrong.contains("t")) return;
   const MotionRows& drive = checked.recording.drive;
-  const MisfitFrame frame{checked.wheelbase, checked.angle_unit, drive.start(), drive.t.back()};
+  const MisfitFrame frame{checked.angle_unit, drive.start(), drive.t.back()};
   const std::vector<Misfit> recorded = misfits(checked.recording, drive, frame);
   const Worst worst = worst_of(recorded, &Misfit::best);
   if (worst.misfit < kDisagrees) return;

@@ -156,8 +156,8 @@ std::optional<MotionRows> drive_without(const ColumnMistake& mistake, const Moti
   const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-9; };
   for (std::size_t row = 0; row < result.rows(); ++row) {
     if (!kinematics.move(result, row)) return std::nullopt;
-    same = same && near(result.left[row], drive.left[row]) &&
-           near(result.right[row], drive.right[row]) && near(result.slip(row), drive.slip(row));
+    same = same && near(result.forward[row], drive.forward[row]) &&
+           near(result.turn[row], drive.turn[row]) && near(result.slip(row), drive.slip(row));
   }
   if (same) return std::nullopt;
   return result;

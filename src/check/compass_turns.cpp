@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Turns of the compass against the difference of the wheels' travels, in stretches in which that
-// has grown by a tenth of a metre, of other drives than two wheels by a third of their wheelbase.
-// In between no wheelbase is needed: it is the slope.
+// Turns of the compass against the wheels', in stretches in which two wheels have come apart by a
+// tenth of a metre, other drives have turned by a third of a radian. Where the wheelbase is not
+// known it is the one taken, over the slope.
 #include "check/findings.hpp"
 #include "text/number_text.hpp"
 
@@ -28,36 +28,36 @@ double wrapped(double angle, double turn) {
 TurnAgreement turns_of(const Checked& checked, WheelMistake mistake, double turn,
                        bool wrap = true) {
   const MotionRows& drive = checked.recording.drive;
-  const double stretch = drive.wheels.empty() ? kTurningTravel : kTellingTurn * checked.wheelbase;
+  const double stretch = drive.wheels.empty() ? kTurningTravel / checked.wheelbase : kTellingTurn;
   double dd = 0.0;
   double dc = 0.0;
   double cc = 0.0;
   TurnAgreement result;
-  double difference = 0.0;
+  double turned = 0.0;
   double change = 0.0;
   double last = kAbsent;
   double begun = drive.start();
-  double waiting = 0.0;  // difference since the last reading
+  double waiting = 0.0;  // turned since the last reading
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    waiting += wheels_of(drive, row, mistake).difference();
+    waiting += motion_without(mistake, drive, row, checked.wheelbase).turn;
     const double reading = drive.heading[row];
     if (std::isnan(reading)) continue;
     if (!std::isnan(last)) {
-      difference += waiting;
+      turned += waiting;
       change +=
           (wrap ? wrapped(reading - last, turn) : reading - last) * 2.0 * std::numbers::pi / turn;
     }
     last = reading;
     waiting = 0.0;
-    const bool full = std::abs(difference) >= stretch;
+    const bool full = std::abs(turned) >= stretch;
     if (!full && drive.t[row] - begun < kLongestTurn) continue;
     if (full) {
-      dd += difference * difference;
-      dc += difference * change;
+      dd += turned * turned;
+      dc += turned * change;
       cc += change * change;
       ++result.turns;
     }
-    difference = change = 0.0;
+    turned = change = 0.0;
     begun = drive.t[row];
   }
   if (dd > 0.0 && cc > 0.0) {
@@ -72,23 +72,22 @@ int turns_on_the_spot(const MotionRows& drive, double wheelbase) {
   constexpr double kWindow = 1.0;  // s
   constexpr double kTurns = 0.4;   // rad
   int count = 0;
-  double difference = 0.0;
-  double sum = 0.0;
+  double shown = 0.0;
+  double ahead = 0.0;
   double first = kAbsent;
   double begun = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const Wheels wheels = wheels_of(drive, row, WheelMistake::none);
-    difference += wheels.difference();
-    sum += 2.0 * wheels.path();
+    shown += drive.turn[row];
+    ahead += drive.forward[row];
     const double reading = drive.heading[row];
     if (std::isnan(reading)) continue;
     if (!std::isnan(first) && drive.t[row] - begun < kWindow) continue;
     const double turn = std::isnan(first) ? 0.0 : wrapped(reading - first, 2.0 * std::numbers::pi);
-    if (std::abs(turn) > kTurns && looks_unsigned(turn, difference, sum, wheelbase)) ++count;
+    if (std::abs(turn) > kTurns && looks_unsigned(turn, shown, ahead, wheelbase)) ++count;
     first = reading;
     begun = drive.t[row];
-    difference = 0.0;
-    sum = 0.0;
+    shown = 0.0;
+    ahead = 0.0;
   }
   return count;
 }
@@ -97,7 +96,7 @@ int turns_on_the_spot(const MotionRows& drive, double wheelbase) {
 bool is_clear(const TurnAgreement& turns, const Checked& checked) {
   constexpr double kNear = 3.0;  // times the wheelbase
   if (std::abs(turns.correlation) < kClearTurns) return false;
-  const double wheelbase = 1.0 / std::abs(turns.slope);
+  const double wheelbase = checked.wheelbase / std::abs(turns.slope);
   return checked.wheelbase_known
              ? std::abs(std::log(wheelbase / checked.wheelbase)) < std::log(kNear)
              : wheelbase > 0.03 && wheelbase < 3.0;
@@ -105,10 +104,10 @@ bool is_clear(const TurnAgreement& turns, const Checked& checked) {
 
 }  // namespace
 
-bool looks_unsigned(double turn, double difference, double sum, double wheelbase) {
-  const double on_the_spot = sum / wheelbase;
+bool looks_unsigned(double turn, double shown, double ahead, double wheelbase) {
+  const double on_the_spot = 2.0 * ahead / wheelbase;
   return std::abs(turn) > 0.4 * on_the_spot && std::abs(turn) < 1.6 * on_the_spot &&
-         std::abs(difference) < 0.3 * wheelbase * std::abs(turn);
+         std::abs(shown) < 0.3 * std::abs(turn);
 }
 
 TurnAgreement check_compass(Checked& checked) {
@@ -132,7 +131,7 @@ TurnAgreement check_compass(Checked& checked) {
     }
   }
   for (const WheelMistake mistake : {WheelMistake::left_negated, WheelMistake::right_negated}) {
-    if (!drive.wheels.empty() || std::abs(best.correlation) > kUnclear) break;
+    if (!drive.of_two_wheels() || std::abs(best.correlation) > kUnclear) break;
     const TurnAgreement other = turns_of(checked, mistake, 2.0 * std::numbers::pi);
     if (other.turns < kFewestTurns || other.correlation < kClearTurns) continue;
     add_lone_wheel(checked, mistake,

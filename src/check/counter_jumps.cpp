@@ -81,7 +81,8 @@ void share(std::vector<double>& travel, const CounterJump& jump, const DriveColu
 }  // namespace
 
 std::vector<WheelReadings> wheel_readings(const MotionRows& drive) {
-  if (drive.wheels.empty()) return {{"left", &drive.left}, {"right", &drive.right}};
+  if (drive.of_two_wheels()) return {{"left", &drive.pair.left}, {"right", &drive.pair.right}};
+  if (!drive.unicycle.empty()) return {{drive.unicycle.front(), &drive.forward}};
   std::vector<WheelReadings> all;
   for (const WheelColumn& one : drive.wheels) {
     if (!one.steers) all.push_back({one.name, &one.reading});

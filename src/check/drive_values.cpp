@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "check/findings.hpp"
+#include "drive/body_motion.hpp"
 #include "statistics/median.hpp"
 #include "text/number_text.hpp"
 
@@ -29,17 +30,18 @@ struct Rows {
 
 bool travels_are_whole(const MotionRows& drive, std::size_t row) {
   const auto whole = [](double travel) { return travel == std::round(travel); };
-  if (drive.wheels.empty()) return whole(drive.left[row]) && whole(drive.right[row]);
+  if (drive.of_two_wheels()) return whole(drive.pair.left[row]) && whole(drive.pair.right[row]);
+  if (drive.wheels.empty()) return whole(drive.forward[row]);
   return std::all_of(drive.wheels.begin(), drive.wheels.end(),
                      [&](const WheelColumn& one) { return one.steers || whole(one.reading[row]); });
 }
 
-Rows rows_of(const MotionRows& drive) {
+Rows rows_of(const MotionRows& drive, double wheelbase) {
   Rows rows;
   std::vector<double> durations;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     durations.push_back(drive.duration(row));
-    const double travel = larger_travel(drive, row);
+    const double travel = larger_travel(drive, row, wheelbase);
     const double speed = travel / durations.back();
     if (travel > 0.0) rows.speeds.push_back(speed);
     if (speed > kSlowest) rows.driving.push_back(speed);
@@ -71,8 +73,8 @@ void check_spikes(Checked& checked, const Rows& rows) {
   std::vector<std::size_t> spikes;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const auto jumps = [&](std::size_t k) {
-      return larger_travel(drive, k) > kSpikeTravel &&
-             larger_travel(drive, k) / drive.duration(k) > kSpike * usual;
+      return larger_travel(drive, k, checked.wheelbase) > kSpikeTravel &&
+             larger_travel(drive, k, checked.wheelbase) / drive.duration(k) > kSpike * usual;
     };
     const bool alone =
         (row == 0 || !jumps(row - 1)) && (row + 1 == drive.rows() || !jumps(row + 1));
@@ -82,21 +84,23 @@ void check_spikes(Checked& checked, const Rows& rows) {
   const std::size_t first = spikes.front();
   checked.note("drive.csv", wheel_columns(checked.recording.drive), "spike",
                joined("the row at t = ", figure(drive.t[first], "s"), " travels ",
-                      figure(larger_travel(drive, first), "m"), ", where 99 of 100 stay below ",
-                      figure(usual * drive.duration(first), "m"),
+                      figure(larger_travel(drive, first, checked.wheelbase), "m"),
+                      ", where 99 of 100 stay below ", figure(usual * drive.duration(first), "m"),
                       spikes.size() > 1 ? joined("; ", spikes.size(), " rows like it") : ""),
                "correct or remove the row: an encoder's jump, or an overflow of its counter");
 }
 
 }  // namespace
 
-double larger_travel(const MotionRows& drive, std::size_t row) {
-  const double ahead = std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
+double larger_travel(const MotionRows& drive, std::size_t row, double wheelbase) {
+  const auto [left, right] =
+      drive.pair.empty() ? wheel_travel(drive.motion(row), wheelbase) : drive.pair.at(row);
+  const double ahead = std::max(std::abs(left), std::abs(right));
   return drive.sideways.empty() ? ahead : std::hypot(ahead, drive.sideways[row]);
 }
 
 void check_drive_values(Checked& checked) {
-  const Rows rows = rows_of(checked.recording.drive);
+  const Rows rows = rows_of(checked.recording.drive, checked.wheelbase);
   if (rows.speeds.empty()) {
     checked.add("drive.csv", wheel_columns(checked.recording.drive), "no motion",
                 "no row has any travel", "record a drive, or look at the columns' source");

@@ -46,8 +46,8 @@ struct Checked {
 /// Times, travels and covariates by themselves: units, spikes, gaps, wheels that stand still.
 void check_drive_values(Checked& checked);
 
-/// Travel of the wheel that goes further in this row, m.
-[[nodiscard]] double larger_travel(const MotionRows& drive, std::size_t row);
+/// Travel of the wheel that goes further in this row, m; of other drives of two that would show it.
+[[nodiscard]] double larger_travel(const MotionRows& drive, std::size_t row, double wheelbase);
 
 /// What rows are like: medians.
 struct UsualRow {
@@ -105,16 +105,16 @@ void check_bearing_unit(Checked& checked);
 /// How one quantity's turns go with another's.
 struct TurnAgreement {
   int sign = 0;        ///< 1 alike, -1 opposite, 0: cannot be told, or neither
-  double slope = 0.0;  ///< turn per difference of the wheels, rad/m
+  double slope = 0.0;  ///< turn per turn of the wheels
   double correlation = 0.0;
   int turns = 0;  ///< samples
   /// On the spot, where the wheels go straight on: what unsigned wheels make of a turn.
   bool unsigned_wheels = false;
 };
 
-/// Whether a turn (rad) is what unsigned wheels, of this difference and sum (m), make of one on the
-/// spot: no drive along an arc turns so much.
-[[nodiscard]] bool looks_unsigned(double turn, double difference, double sum, double wheelbase);
+/// Whether a turn (rad) is what unsigned wheels, that show this turn (rad) and way ahead (m), make
+/// of one on the spot: no drive along an arc turns so much.
+[[nodiscard]] bool looks_unsigned(double turn, double shown, double ahead, double wheelbase);
 
 /// Of the compass with the wheels, reported where it is in degrees or fits another mistake better.
 [[nodiscard]] TurnAgreement check_compass(Checked& checked);

@@ -34,19 +34,19 @@ auto first_from(const std::vector<Timed>& all, double t) {
 }
 
 /// The way of the faster wheel to the end of each row, m: on the spot the axle's centre has none.
-std::vector<double> way_of(const MotionRows& drive) {
+std::vector<double> way_of(const MotionRows& drive, double wheelbase) {
   std::vector<double> way;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    way.push_back(larger_travel(drive, row) + (row == 0 ? 0.0 : way.back()));
+    way.push_back(larger_travel(drive, row, wheelbase) + (row == 0 ? 0.0 : way.back()));
   }
   return way;
 }
 
 /// The wheels slow down before the row and gather speed from it on, or turn the robot on the spot,
 /// if they move at all.
-bool rests_in(const MotionRows& drive, std::size_t row, const UsualRow& usual) {
+bool rests_in(const MotionRows& drive, std::size_t row, const UsualRow& usual, double wheelbase) {
   const auto speed = [&](std::size_t k) {
-    return larger_travel(drive, k) / std::min(drive.duration(k), usual.duration);
+    return larger_travel(drive, k, wheelbase) / std::min(drive.duration(k), usual.duration);
   };
   const auto comes_from = [&](double one, double farther) {
     return one < kSlow * usual.speed && one < kSlower * farther;
@@ -56,8 +56,8 @@ bool rests_in(const MotionRows& drive, std::size_t row, const UsualRow& usual) {
   const bool stops = before == 0.0 || (row >= 3 && comes_from(before, speed(row - 2)) &&
                                        speed(row - 2) < kSlower * speed(row - 3));
   if (!stops) return false;
-  const bool spins = std::abs(drive.left[row] + drive.right[row]) <
-                     kOnTheSpot * std::abs(drive.right[row] - drive.left[row]);
+  const bool spins =
+      2.0 * std::abs(drive.forward[row]) < kOnTheSpot * wheelbase * std::abs(drive.turn[row]);
   return spins || speed(row) == 0.0 ||
          (row + 1 < drive.rows() && comes_from(speed(row), speed(row + 1)));
 }
@@ -92,16 +92,14 @@ std::optional<bool> stands_by_truth(const DrivenRecording& recording,
 
 /// The same of the compass: the last reading before the row and the first from it on, less what the
 /// wheels have turned in between.
-std::optional<bool> stands_by_compass(const MotionRows& drive, std::size_t row, double wheelbase) {
+std::optional<bool> stands_by_compass(const MotionRows& drive, std::size_t row) {
   if (!drive.has_compass()) return std::nullopt;
   std::size_t before = row - 1;
   std::size_t after = row;
   while (before > 0 && std::isnan(drive.heading[before])) --before;
   while (after + 1 < drive.rows() && std::isnan(drive.heading[after])) ++after;
   double turn = drive.heading[after] - drive.heading[before];
-  for (std::size_t k = before + 1; k <= after; ++k) {
-    turn -= (drive.right[k] - drive.left[k]) / wheelbase;
-  }
+  for (std::size_t k = before + 1; k <= after; ++k) turn -= drive.turn[k];
   const bool near =
       drive.t[row - 1] - drive.t[before] < kBeside && drive.t[after] - drive.t[row] < kBeside;
   if (std::isnan(turn) || !near) return std::nullopt;
@@ -124,12 +122,12 @@ bool stands_still_over(const Checked& checked, const std::vector<double>& path, 
                        const UsualRow& usual) {
   const DrivenRecording& recording = checked.recording;
   const MotionRows& drive = recording.drive;
-  if (!rests_in(drive, row, usual)) return false;
+  if (!rests_in(drive, row, usual, checked.wheelbase)) return false;
   const double from = drive.t[row - 1];
   const double to = std::max(from, drive.t[row] - usual.duration);
   if (stands_elsewhere(recording, from, to)) return false;
   const std::optional<bool> by_truth = stands_by_truth(recording, path, from, to);
-  const std::optional<bool> by_compass = stands_by_compass(drive, row, checked.wheelbase);
+  const std::optional<bool> by_compass = stands_by_compass(drive, row);
   if (!by_truth && !by_compass) return false;
   return by_truth.value_or(true) && by_compass.value_or(true);
 }
@@ -140,7 +138,7 @@ void check_gaps(Checked& checked, const UsualRow& usual) {
   if (checked.wrong.contains("t")) return;
   const MotionRows& drive = checked.recording.drive;
   const double longest = std::max(kLongGap, kGapRows * usual.duration);
-  const std::vector<double> path = way_of(drive);
+  const std::vector<double> path = way_of(drive, checked.wheelbase);
   const std::vector<std::size_t> jumps = clock_jumps(drive, usual);
   std::vector<std::size_t> gaps;
   for (std::size_t row = 1; row < drive.rows(); ++row) {
@@ -148,7 +146,7 @@ void check_gaps(Checked& checked, const UsualRow& usual) {
     if (duration <= longest) continue;
     if (std::find(jumps.begin(), jumps.end(), row) != jumps.end()) continue;
     // Travels that a long row has summed up are no gap.
-    if (larger_travel(drive, row) > kSummedUp * usual.speed * duration) continue;
+    if (larger_travel(drive, row, checked.wheelbase) > kSummedUp * usual.speed * duration) continue;
     if (!stands_still_over(checked, path, row, usual)) gaps.push_back(row);
   }
   if (gaps.empty()) return;

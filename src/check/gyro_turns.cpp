@@ -30,7 +30,7 @@ TurnAgreement check_gyro(Checked& checked) {
   double gyro = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     if (std::isnan(drive.yaw_rate[row])) continue;
-    wheels += (drive.right[row] - drive.left[row]) / checked.wheelbase;
+    wheels += drive.turn[row];
     gyro += drive.yaw_rate[row] * drive.duration(row);
     if (std::abs(wheels) < kGyroStretch) continue;
     ww += wheels * wheels;
@@ -41,7 +41,7 @@ TurnAgreement check_gyro(Checked& checked) {
   }
   if (result.turns < kFewestStretches || !(gg > 0.0)) return result;
   result.correlation = wg / std::sqrt(ww * gg);
-  result.slope = wg / (ww * checked.wheelbase);
+  result.slope = wg / ww;
   if (std::abs(result.correlation) < kClearGyro) return result;
   result.sign = result.correlation > 0.0 ? 1 : -1;
   const double times = std::sqrt(gg / ww);

@@ -74,10 +74,6 @@ struct Window {
   [[nodiscard]] bool holds(double t) const { return t >= frame.from && t <= frame.to; }
 };
 
-double turn_of(const Window& in, std::size_t row) {
-  return (in.drive.right[row] - in.drive.left[row]) / in.frame.wheelbase;
-}
-
 std::optional<double> compass_misfit(const Window& in, double unit) {
   TurnMisfit misfit;
   double last = kAbsent;
@@ -85,7 +81,7 @@ std::optional<double> compass_misfit(const Window& in, double unit) {
   const std::vector<double>& heading = in.recording.drive.heading;
   for (std::size_t row = 0; row < heading.size(); ++row) {
     if (!in.holds(in.drive.t[row])) continue;
-    turned += turn_of(in, row);
+    turned += in.drive.turn[row];
     if (std::isnan(heading[row])) continue;
     if (!std::isnan(last)) misfit.add(turned, wrap_angle(unit * (heading[row] - last)));
     last = heading[row];
@@ -99,7 +95,7 @@ std::optional<double> gyro_misfit(const Window& in, double unit) {
   const std::vector<double>& rate = in.recording.drive.yaw_rate;
   for (std::size_t row = 0; row < rate.size(); ++row) {
     if (std::isnan(rate[row]) || !in.holds(in.drive.t[row])) continue;
-    misfit.add(turn_of(in, row), unit * rate[row] * in.drive.duration(row));
+    misfit.add(in.drive.turn[row], unit * rate[row] * in.drive.duration(row));
   }
   return misfit.value();
 }
@@ -297,7 +293,7 @@ std::string_view name_of(Witness witness) {
 std::vector<Misfit> misfits(const DrivenRecording& recording, const MotionRows& drive,
                             const MisfitFrame& frame) {
   constexpr double kGood = 0.1;  // needs no excuse
-  const Track track(drive, frame.wheelbase);
+  const Track track(drive);
   const Window in{recording, drive, track, frame};
   std::vector<Misfit> result;
   for (const Witness witness : kWitnesses) {
@@ -316,7 +312,7 @@ std::vector<Misfit> misfits(const DrivenRecording& recording, const MotionRows& 
 std::optional<std::vector<Misfit>> misfits_below(double limit, const DrivenRecording& recording,
                                                  const MotionRows& drive,
                                                  const MisfitFrame& frame) {
-  const Track track(drive, frame.wheelbase);
+  const Track track(drive);
   const Window in{recording, drive, track, frame};
   std::vector<Misfit> result;
   for (const Witness witness : kWitnesses) {

@@ -38,7 +38,6 @@ struct Misfit {
 
 /// Where and with what they are taken.
 struct MisfitFrame {
-  double wheelbase = 0.0;     ///< m
   double bearing_unit = 1.0;  ///< rad per unit of bearings
   double from = 0.0;          ///< s
   double to = 0.0;            ///< s

@@ -31,18 +31,20 @@ constexpr double kChordNoise = 8.0;       // times the places' noise
 constexpr double kLongestChord = 60.0;    // s
 constexpr std::size_t kFewestChords = 5;
 
-/// m that the wheels lead the robot, forwards or backwards, and what one of them goes for a turn.
+/// What the wheels lead the robot, forwards or backwards, and turn it, to either side.
 struct WheelSums {
-  double path = 0.0;
-  double turn = 0.0;
+  double path = 0.0;    ///< m
+  double turn = 0.0;    ///< rad
+  double spread = 0.0;  ///< m that one of two wheels goes for it
 };
 
-WheelSums wheel_sums(const MotionRows& drive) {
+WheelSums wheel_sums(const MotionRows& drive, double wheelbase) {
   WheelSums sums;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     sums.path += drive.way(row);
-    sums.turn += 0.5 * std::abs(drive.right[row] - drive.left[row]);
+    sums.turn += std::abs(drive.turn[row]);
   }
+  sums.spread = 0.5 * wheelbase * sums.turn;
   return sums;
 }
 
@@ -98,17 +100,17 @@ class TurningStretch {
  public:
   explicit TurningStretch(double wheelbase) : wheelbase_(wheelbase) {}
 
-  void add(double shown, double difference, double sum, double duration) {
+  void add(double shown, double by_wheels, double ahead, double duration) {
     if (std::abs(shown) > kUntold) return reset();
     shown_ += shown;
-    difference_ += difference;
-    sum_ += sum;
+    by_wheels_ += by_wheels;
+    ahead_ += ahead;
     time_ += duration;
     if (std::abs(shown_) >= kTurning) {
       ++turnings_.count;
-      if (looks_unsigned(shown_, difference_, sum_, wheelbase_)) ++turnings_.on_the_spot;
+      if (looks_unsigned(shown_, by_wheels_, ahead_, wheelbase_)) ++turnings_.on_the_spot;
       turnings_.shown += std::abs(shown_);
-      turnings_.by_wheels += std::abs(difference_) / wheelbase_;
+      turnings_.by_wheels += std::abs(by_wheels_);
       reset();
     } else if (time_ > kLongestTurning) {
       reset();
@@ -117,12 +119,12 @@ class TurningStretch {
   [[nodiscard]] const Turnings& turnings() const { return turnings_; }
 
  private:
-  void reset() { shown_ = difference_ = sum_ = time_ = 0.0; }
+  void reset() { shown_ = by_wheels_ = ahead_ = time_ = 0.0; }
 
   double wheelbase_;
   double shown_ = 0.0;
-  double difference_ = 0.0;
-  double sum_ = 0.0;
+  double by_wheels_ = 0.0;
+  double ahead_ = 0.0;
   double time_ = 0.0;
   Turnings turnings_;
 };
@@ -131,26 +133,26 @@ Turnings turnings_of_gyro(const MotionRows& drive, double wheelbase) {
   TurningStretch stretch(wheelbase);
   for (std::size_t row = 0; row < drive.yaw_rate.size(); ++row) {
     if (std::isnan(drive.yaw_rate[row])) continue;
-    stretch.add(drive.yaw_rate[row] * drive.duration(row), drive.right[row] - drive.left[row],
-                drive.left[row] + drive.right[row], drive.duration(row));
+    stretch.add(drive.yaw_rate[row] * drive.duration(row), drive.turn[row], drive.forward[row],
+                drive.duration(row));
   }
   return stretch.turnings();
 }
 
 Turnings turnings_of_compass(const MotionRows& drive, double wheelbase) {
   TurningStretch stretch(wheelbase);
-  double difference = 0.0;
-  double sum = 0.0;
+  double turn = 0.0;
+  double ahead = 0.0;
   std::size_t last = drive.rows();
   for (std::size_t row = 0; row < drive.heading.size(); ++row) {
-    difference += drive.right[row] - drive.left[row];
-    sum += drive.left[row] + drive.right[row];
+    turn += drive.turn[row];
+    ahead += drive.forward[row];
     if (std::isnan(drive.heading[row])) continue;
     if (last < drive.rows()) {
-      stretch.add(wrap_angle(drive.heading[row] - drive.heading[last]), difference, sum,
+      stretch.add(wrap_angle(drive.heading[row] - drive.heading[last]), turn, ahead,
                   drive.t[row] - drive.t[last]);
     }
-    difference = sum = 0.0;
+    turn = ahead = 0.0;
     last = row;
   }
   return stretch.turnings();
@@ -182,7 +184,7 @@ bool go_round_without(const PlacesSeen& places, const Checked& checked, const Tr
     auto row = static_cast<std::size_t>(std::upper_bound(drive.t.begin(), drive.t.end(), from) -
                                         drive.t.begin());
     for (; row < drive.rows() && drive.t[row] <= to; ++row) {
-      turned += std::abs(drive.right[row] - drive.left[row]) / checked.wheelbase;
+      turned += std::abs(drive.turn[row]);
     }
   }
   return turned < kHardlyTurns * corners;
@@ -195,8 +197,8 @@ Turnings turnings_of_truth(const DrivenRecording& recording, double wheelbase, c
     if (one.t < recording.drive.start() || one.t > recording.drive.t.back()) continue;
     if (last != nullptr) {
       const double turn = track.at(one.t).heading - track.at(last->t).heading;
-      stretch.add(wrap_angle(one.heading - last->heading), wheelbase * turn,
-                  2.0 * (track.way_at(one.t) - track.way_at(last->t)), one.t - last->t);
+      stretch.add(wrap_angle(one.heading - last->heading), turn,
+                  track.way_at(one.t) - track.way_at(last->t), one.t - last->t);
     }
     last = &one;
   }
@@ -204,12 +206,11 @@ Turnings turnings_of_truth(const DrivenRecording& recording, double wheelbase, c
 }
 
 /// In every row both wheels travel the same, to the last digits.
-bool never_differ(const MotionRows& drive) {
+bool never_differ(const MotionRows& drive, double wheelbase) {
   constexpr double kRounding = 1e-6;  // of the travel
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    if (std::abs(drive.right[row] - drive.left[row]) > kRounding * std::abs(drive.left[row])) {
-      return false;
-    }
+    const double apart = wheelbase * std::abs(drive.turn[row]);
+    if (apart > kRounding * std::abs(drive.forward[row])) return false;
   }
   return true;
 }
@@ -226,20 +227,19 @@ std::string and_others(const std::vector<std::string>& names) {
 
 void check_no_travel(Checked& checked, const Track& track) {
   const MotionRows& drive = checked.recording.drive;
-  const WheelSums sums = wheel_sums(drive);
-  if (checked.wheels_wrong() || sums.path > kHardlyMoves * sums.turn) return;
+  const WheelSums sums = wheel_sums(drive, checked.wheelbase);
+  if (checked.wheels_wrong() || sums.path > kHardlyMoves * sums.spread) return;
   for (const PlacesSeen& places :
        {places_by_stops(checked.recording), places_by_fixes(checked.recording),
         places_by_ranges(checked.recording), places_by_truth(checked.recording)}) {
     const Moved moved = moved_by(places, checked, track);
     if (moved.chords < kFewestChords || moved.by_wheels > kHardlyMoves) continue;
-    checked.add(
-        "drive.csv", wheel_columns(drive), "no travel",
-        joined("the wheels turn the robot by ", figure(2.0 * sums.turn / checked.wheelbase, "rad"),
-               " in all and never travel (", figure(sums.path, "m"), "), while it moves ",
-               figure(moved.chord, "m"), " by ", places.name),
-        "look where the travels come from: the forward speed, or what both wheels have in "
-        "common, was left out");
+    checked.add("drive.csv", wheel_columns(drive), "no travel",
+                joined("the wheels turn the robot by ", figure(sums.turn, "rad"),
+                       " in all and never travel (", figure(sums.path, "m"), "), while it moves ",
+                       figure(moved.chord, "m"), " by ", places.name),
+                "look where the travels come from: the forward speed, or what both wheels have in "
+                "common, was left out");
     return;
   }
 }
@@ -247,8 +247,8 @@ void check_no_travel(Checked& checked, const Track& track) {
 void check_no_turning(Checked& checked, const Track& track) {
   constexpr double kNoise = 0.03;  // of the way, by which travels that are meant to be alike differ
   const MotionRows& drive = checked.recording.drive;
-  const WheelSums sums = wheel_sums(drive);
-  if (checked.wheels_wrong() || !drive.wheels.empty() || sums.turn > kNoise * sums.path) return;
+  const WheelSums sums = wheel_sums(drive, checked.wheelbase);
+  if (checked.wheels_wrong() || !drive.wheels.empty() || sums.spread > kNoise * sums.path) return;
   std::vector<std::string> turning;
   const auto take = [&](const char* name, const Turnings& one) {
     if (one.contradict()) turning.emplace_back(name);
@@ -261,7 +261,7 @@ void check_no_turning(Checked& checked, const Track& track) {
   }
   take("the truth", turnings_of_truth(checked.recording, checked.wheelbase, track));
   // By places alone turns on the spot without signs look the same.
-  const bool same = never_differ(drive);
+  const bool same = never_differ(drive, checked.wheelbase);
   if (same || !turning.empty()) {
     for (const PlacesSeen& places :
          {places_by_stops(checked.recording), places_by_fixes(checked.recording),
@@ -270,9 +270,8 @@ void check_no_turning(Checked& checked, const Track& track) {
     }
   }
   if (turning.empty()) return;
-  const std::string wheels =
-      same ? std::string(": left and right are the same in every row")
-           : joined(" (", figure(2.0 * sums.turn / checked.wheelbase, "rad"), " in all)");
+  const std::string wheels = same ? std::string(": left and right are the same in every row")
+                                  : joined(" (", figure(sums.turn, "rad"), " in all)");
   checked.add("drive.csv", wheel_columns(drive), "no turning",
               joined("the wheels show no turning", wheels, ", while the robot turns by ",
                      and_others(turning)),

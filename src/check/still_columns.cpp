@@ -58,10 +58,10 @@ Stretch longest_still(const MotionRows& drive, std::size_t column) {
   return longest;
 }
 
-double turned(const MotionRows& drive, const Stretch& in, double wheelbase) {
+double turned(const MotionRows& drive, const Stretch& in) {
   double sum = 0.0;
   for (std::size_t row = in.first; row < in.end; ++row) {
-    sum += std::abs(drive.right[row] - drive.left[row]) / wheelbase;
+    sum += std::abs(drive.turn[row]);
   }
   return sum;
 }
@@ -70,8 +70,8 @@ double turned(const MotionRows& drive, const Stretch& in, double wheelbase) {
 std::optional<Misfit> contradiction(const Checked& checked, const Stretch& in) {
   const MotionRows& drive = checked.recording.drive;
   const double from = in.first == 0 ? drive.start() : drive.t[in.first - 1];
-  const std::vector<Misfit> all = misfits(
-      checked.recording, drive, {checked.wheelbase, checked.angle_unit, from, drive.t[in.end - 1]});
+  const std::vector<Misfit> all =
+      misfits(checked.recording, drive, {checked.angle_unit, from, drive.t[in.end - 1]});
   if (all.empty()) return std::nullopt;
   return *std::max_element(all.begin(), all.end(),
                            [](const Misfit& a, const Misfit& b) { return a.best < b.best; });
@@ -84,7 +84,7 @@ bool is_unlikely(const Checked& checked, const Stretch& in) {
     case DriveKind::skid_steer:
       return true;
     case DriveKind::omni3:
-      return turned(checked.recording.drive, in, checked.wheelbase) > kHardly;
+      return turned(checked.recording.drive, in) > kHardly;
     default:
       return false;
   }

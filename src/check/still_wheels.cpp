@@ -61,12 +61,12 @@ struct StillStretch {
 };
 
 /// By the wheels at the end of each row, from 0 at the drive's start, rad.
-std::vector<double> wheel_headings(const MotionRows& drive, double wheelbase) {
+std::vector<double> wheel_headings(const MotionRows& drive) {
   std::vector<double> headings;
   headings.reserve(drive.rows());
   double heading = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    heading += (drive.right[row] - drive.left[row]) / wheelbase;
+    heading += drive.turn[row];
     headings.push_back(heading);
   }
   return headings;
@@ -86,12 +86,11 @@ Turned by_compass(const MotionRows& drive, const StillStretch& stretch,
   return turned;
 }
 
-Turned by_gyro(const MotionRows& drive, const StillStretch& stretch, double wheelbase) {
+Turned by_gyro(const MotionRows& drive, const StillStretch& stretch) {
   Turned turned;
   for (std::size_t row = stretch.first; drive.has_gyro() && row < stretch.end; ++row) {
     if (std::isnan(drive.yaw_rate[row])) continue;
-    turned.add((drive.right[row] - drive.left[row]) / wheelbase,
-               drive.yaw_rate[row] * drive.duration(row));
+    turned.add(drive.turn[row], drive.yaw_rate[row] * drive.duration(row));
   }
   return turned;
 }
@@ -137,8 +136,7 @@ bool turns_about_it(const Checked& checked, const StillStretch& stretch,
   const DrivenRecording& recording = checked.recording;
   bool shown = false;
   for (const Turned& one :
-       std::array{by_compass(recording.drive, stretch, wheels),
-                  by_gyro(recording.drive, stretch, checked.wheelbase),
+       std::array{by_compass(recording.drive, stretch, wheels), by_gyro(recording.drive, stretch),
                   by_truth(recording, stretch, wheels), by_bearings(recording, stretch, wheels)}) {
     if (!one.tells()) continue;
     if (!one.agrees()) return false;
@@ -200,9 +198,9 @@ void ask(Checked& checked, const std::vector<double>& wheels, const char* name,
 
 void check_still_wheels(Checked& checked) {
   const MotionRows& drive = checked.recording.drive;
-  const std::vector<double> wheels = wheel_headings(drive, checked.wheelbase);
-  ask(checked, wheels, "left", drive.left, drive.right);
-  ask(checked, wheels, "right", drive.right, drive.left);
+  const std::vector<double> wheels = wheel_headings(drive);
+  ask(checked, wheels, "left", drive.pair.left, drive.pair.right);
+  ask(checked, wheels, "right", drive.pair.right, drive.pair.left);
 }
 
 }  // namespace trussmap

@@ -169,7 +169,7 @@ void check_units(Checked& checked, const SurveyAgreement& agreement) {
 
 /// Whatever the wheels' scale and the size of their turns.
 int sign_of_places(const Checked& checked, const Track& track, const PlacesSeen& places) {
-  return turn_sign(checked.recording.drive, checked.wheelbase, track, places);
+  return turn_sign(checked.recording.drive, track, places);
 }
 
 }  // namespace

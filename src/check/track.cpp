@@ -2,28 +2,29 @@
 // SPDX-License-Identifier: MIT
 #include "check/track.hpp"
 
+#include "drive/body_motion.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace trussmap {
 
-Wheels wheels_of(const MotionRows& drive, std::size_t row, WheelMistake mistake) {
-  const double left = drive.left[row];
-  const double right = drive.right[row];
-  const double sideways = drive.slip(row);
+BodyMotion motion_without(WheelMistake mistake, const MotionRows& drive, std::size_t row,
+                          double wheelbase) {
+  const BodyMotion recorded = drive.motion(row);
   switch (mistake) {
     case WheelMistake::none:
-      return {left, right, sideways};
+      break;
     case WheelMistake::exchanged:
-      return {right, left, -sideways};
+      return {recorded.forward, -recorded.sideways, -recorded.turn};
     case WheelMistake::negated:
-      return {-left, -right, -sideways};
+      return -1.0 * recorded;
     case WheelMistake::left_negated:
-      return {-left, right};
+      return body_motion({-drive.pair.left[row], drive.pair.right[row]}, wheelbase);
     case WheelMistake::right_negated:
-      return {left, -right};
+      return body_motion({drive.pair.left[row], -drive.pair.right[row]}, wheelbase);
   }
-  return {left, right, sideways};
+  return recorded;
 }
 
 std::string wheel_columns(const MotionRows& drive) {
@@ -34,7 +35,7 @@ std::string wheel_columns(const MotionRows& drive) {
   return names;
 }
 
-Track::Track(const MotionRows& drive, double wheelbase, WheelMistake mistake, Heading heading) {
+Track::Track(const MotionRows& drive, WheelMistake mistake, double wheelbase, Heading heading) {
   constexpr double kHeed = 0.05;  // of what the compass says, per reading
   t_.reserve(drive.rows() + 1);
   poses_.reserve(drive.rows() + 1);
@@ -45,16 +46,11 @@ Track::Track(const MotionRows& drive, double wheelbase, WheelMistake mistake, He
   Pose at;
   bool seen = false;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const Wheels wheels = wheels_of(drive, row, mistake);
-    const double turn = wheels.difference() / wheelbase;
-    const double half = at.heading + 0.5 * turn;
-    at.x += wheels.path() * std::cos(half);
-    at.y += wheels.path() * std::sin(half);
-    if (wheels.sideways != 0.0) {
-      at.x -= wheels.sideways * std::sin(half);
-      at.y += wheels.sideways * std::cos(half);
-    }
-    at.heading += turn;
+    const BodyMotion motion = motion_without(mistake, drive, row, wheelbase);
+    const double half = at.heading + 0.5 * motion.turn;
+    at.x += motion.forward * std::cos(half) - motion.sideways * std::sin(half);
+    at.y += motion.forward * std::sin(half) + motion.sideways * std::cos(half);
+    at.heading += motion.turn;
     if (heading == Heading::of_compass && !std::isnan(drive.heading[row])) {
       const double off = wrap_angle(drive.heading[row] - at.heading);
       at.heading += seen ? kHeed * off : off;
@@ -62,7 +58,7 @@ Track::Track(const MotionRows& drive, double wheelbase, WheelMistake mistake, He
     }
     t_.push_back(drive.t[row]);
     poses_.push_back(at);
-    way_.push_back(way_.back() + std::hypot(wheels.path(), wheels.sideways));
+    way_.push_back(way_.back() + std::hypot(motion.forward, motion.sideways));
   }
 }
 

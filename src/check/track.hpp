@@ -18,16 +18,9 @@ namespace trussmap {
 /// Of other drives than two wheels: `exchanged` is the mirrored motion.
 enum class WheelMistake { none, exchanged, negated, left_negated, right_negated };
 
-/// A row's travels as they would be without the mistake.
-struct Wheels {
-  double left = 0.0;      ///< m
-  double right = 0.0;     ///< m
-  double sideways = 0.0;  ///< m to the left
-
-  [[nodiscard]] double path() const { return 0.5 * (left + right); }
-  [[nodiscard]] double difference() const { return right - left; }
-};
-[[nodiscard]] Wheels wheels_of(const MotionRows& drive, std::size_t row, WheelMistake mistake);
+/// A row's motion as it would be without the mistake; `wheelbase` (m) of two wheels.
+[[nodiscard]] BodyMotion motion_without(WheelMistake mistake, const MotionRows& drive,
+                                        std::size_t row, double wheelbase);
 
 /// "left,right", or the names of the drive's own columns.
 [[nodiscard]] std::string wheel_columns(const MotionRows& drive);
@@ -38,8 +31,9 @@ enum class Heading { of_wheels, of_compass };
 /// Poses at the ends of a drive's rows, from (0, 0, 0) at its start; straight in between.
 class Track {
  public:
-  Track(const MotionRows& drive, double wheelbase, WheelMistake mistake = WheelMistake::none,
-        Heading heading = Heading::of_wheels);
+  /// `wheelbase`: as motion_without.
+  explicit Track(const MotionRows& drive, WheelMistake mistake = WheelMistake::none,
+                 double wheelbase = 0.0, Heading heading = Heading::of_wheels);
 
   [[nodiscard]] Pose at(double t) const;
   [[nodiscard]] double way_at(double t) const;  ///< m driven since the start

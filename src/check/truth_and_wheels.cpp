@@ -195,8 +195,7 @@ TruthAgreement truth_agreement(const Checked& checked, const Track& track) {
       std::count_if(stretches.begin(), stretches.end(), [&](const TruthStretch& one) {
         const double turn = wrap_angle(one.turn);
         return std::abs(turn) > kOnTheSpot &&
-               looks_unsigned(turn, one.wheels.heading * checked.wheelbase, 2.0 * one.way,
-                              checked.wheelbase);
+               looks_unsigned(turn, one.wheels.heading, one.way, checked.wheelbase);
       });
   result.unsigned_wheels = result.by_heading == 0 && spins >= kFewestSpins;
   result.contradicts =

@@ -82,17 +82,16 @@ struct Course {
   std::vector<Complex> places;
 };
 
-Course course_of(const MotionRows& drive, double wheelbase, const std::vector<TimedPlace>& places,
+Course course_of(const MotionRows& drive, const std::vector<TimedPlace>& places,
                  const CornerPiece& piece) {
   constexpr double kStraight = 0.05;  // rad
   Course course{{}, {0}, centred(places, piece)};
   for (std::size_t k = piece.first + 1; k < piece.end; ++k) {
     Step sum;
     for (const DriveRow& row : rows_between(drive, places[k - 1].t, places[k].t)) {
-      const double left = drive.left[row.row];
-      const double right = drive.right[row.row];
-      sum.ahead += row.part * Complex(0.5 * (left + right), drive.slip(row.row));
-      sum.turn += row.part * (right - left) / wheelbase;
+      const BodyMotion motion = motion_of(drive, row);
+      sum.ahead += Complex(motion.forward, motion.sideways);
+      sum.turn += motion.turn;
       if (std::abs(sum.turn) > kStraight) course.steps.push_back(std::exchange(sum, {}));
     }
     course.steps.push_back(sum);
@@ -192,14 +191,13 @@ std::vector<CornerPiece> corner_pieces(const std::vector<TimedPlace>& places, co
   return thinned(std::move(pieces), kMostPieces);
 }
 
-int turn_sign(const MotionRows& drive, double wheelbase, const Track& track,
-              const PlacesSeen& places) {
+int turn_sign(const MotionRows& drive, const Track& track, const PlacesSeen& places) {
   const std::vector<TimedPlace> apart = places_apart(places, track);
   const std::vector<CornerPiece> pieces = corner_pieces(apart, track, places.noise);
   if (pieces.size() < kFewestPieces) return 0;
   std::vector<Course> courses;
   for (const CornerPiece& piece : pieces) {
-    courses.push_back(course_of(drive, wheelbase, apart, piece));
+    courses.push_back(course_of(drive, apart, piece));
   }
   return sign_of(best_factors(courses, kNearSteps), best_factors(courses, kFarSteps));
 }

@@ -34,7 +34,6 @@ struct CornerPiece {
                                                      const Track& track, double noise);
 
 /// The sign of the factor; 0: cannot be told.
-[[nodiscard]] int turn_sign(const MotionRows& drive, double wheelbase, const Track& track,
-                            const PlacesSeen& places);
+[[nodiscard]] int turn_sign(const MotionRows& drive, const Track& track, const PlacesSeen& places);
 
 }  // namespace trussmap

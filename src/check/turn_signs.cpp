@@ -97,7 +97,7 @@ double forward_share(const MotionRows& drive) {
   double forward = 0.0;
   double all = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const double path = 0.5 * (drive.left[row] + drive.right[row]);
+    const double path = drive.forward[row];
     forward += path;
     all += std::abs(path);
   }

@@ -128,7 +128,7 @@ Explained best_explanation(const Checked& checked, const std::vector<Pair>& pair
                                      WheelMistake::right_negated});
   }
   for (const WheelMistake wheels : mistakes) {
-    const Track other(drive, checked.wheelbase, wheels);
+    const Track other(drive, wheels, checked.wheelbase);
     for (const double range : {1.0, 0.01, 0.001, 0.3048, 0.0254}) {
       const Reading unit{range, checked.angle_unit};
       const double error = disagreement(pairs, other, unit);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/data_lacks.hpp"
 
-#include "drive/body_motion.hpp"
 #include "drive/legs.hpp"
 #include "drive/row_variables.hpp"
 
@@ -46,12 +45,12 @@ double spread(const std::vector<double>& values) {
 
 void add(const DrivenRecording& recording, const Robot& robot, Contents& contents) {
   const MotionRows& drive = recording.drive;
-  const std::vector<MotionKind> kinds = motion_kinds(drive);
+  const std::vector<MotionKind> kinds = motion_kinds(drive, robot);
   double heading = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const double begin = row == 0 ? drive.start() : drive.t[row - 1];
     const double duration = drive.t[row] - begin;
-    const auto [path, aside, turn] = body_motion(drive, row, robot);
+    const auto [path, aside, turn] = drive.motion(row);
     heading += turn;
     contents.time += duration;
     contents.path += std::abs(path);

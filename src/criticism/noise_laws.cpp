@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/noise_laws.hpp"
 
-#include "drive/body_motion.hpp"
 #include "estimation/segment_noise.hpp"
 #include "fit/noise_reml.hpp"
 #include "odometry/row_reckoner.hpp"
@@ -54,7 +53,7 @@ std::vector<DriveLaw> drive_laws(const FitState& fit, const ShapeContext& contex
   }
   noise = silent_noise();  // of each wheel: half the travel's variance and 2/B^2 of the turn's
   noise.travel_per_s = std::sqrt(0.5);
-  noise.heading_per_s = body_motion({0.0, std::sqrt(2.0)}, fit.model.robot).turn;
+  noise.heading_per_s = std::sqrt(2.0) / fit.model.robot.wheelbase;
   add("per second", "m/sqrt(s)", kSeconds, noise);
   noise = silent_noise();
   noise.heading_per_s = 1.0;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/single_events.hpp"
 
-#include "drive/body_motion.hpp"
 #include "validation/leg_spans.hpp"
 
 #include <cmath>
@@ -90,7 +89,7 @@ class Collector {
       readings.push_back(count);
       count += std::isnan(row.reading) ? 0 : 1;
     }
-    const double by_turn = body_motion({0.0, 1.0}, fit_.model.robot).turn;  // rad per m of a wheel
+    const double by_turn = 1.0 / fit_.model.robot.wheelbase;  // rad per m of a wheel
     const auto by_motion = [&](std::size_t row) {
       Eigen::MatrixXd change = Eigen::MatrixXd::Zero(segment.rows, 3);
       change.topLeftCorner<2, 2>() = rotation(ends[row].heading);

@@ -78,15 +78,14 @@ double faintest_turn(const FitState& fit) {
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       const double duration = drive.duration(row);
       const Robot& robot = fit.model.robot;
-      // Of two wheels times the wheelbase's square.
-      const bool two = drive.wheels.empty();
-      const double variance = two ? noise.left * noise.left * std::abs(drive.left[row]) +
-                                        noise.right * noise.right * std::abs(drive.right[row])
+      const double variance = drive.wheels.empty()
+                                  ? wheel_arc_noise(noisy_travel(drive, row, robot),
+                                                    robot.wheelbase, {noise.left, noise.right})
+                                        .heading
                                   : row_noise(drive, row, 1.0, duration, robot, noise).heading;
       if (variance == 0.0) continue;
       const double window = std::max(duration, 0.5 * kRateWindow);
-      const double sd = std::sqrt(variance / duration / window);
-      deviations.push_back(two ? body_motion({0.0, sd}, robot).turn : sd);
+      deviations.push_back(std::sqrt(variance / duration / window));
     }
   }
   if (deviations.empty()) return 0.0;

@@ -8,55 +8,59 @@
 #include "trussmap/recording.hpp"
 #include "trussmap/robot.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace trussmap {
 
-/// Along its own axes, evenly as it turns.
-struct BodyMotion {
-  double forward = 0.0;   ///< m
-  double sideways = 0.0;  ///< m to the left
-  double turn = 0.0;      ///< rad
-
-  friend BodyMotion operator*(double share, const BodyMotion& of) {
-    return {share * of.forward, share * of.sideways, share * of.turn};
-  }
-};
-
 /// Of two wheels that are so far apart (m), or of what two wheels there would show.
-[[nodiscard]] inline BodyMotion body_motion(const WheelTravel& travel, double wheelbase,
-                                            double sideways = 0.0) {
-  return {0.5 * (travel.left + travel.right), sideways, (travel.right - travel.left) / wheelbase};
-}
-[[nodiscard]] inline BodyMotion body_motion(const WheelTravel& travel, const Robot& robot,
-                                            double sideways = 0.0) {
-  return body_motion(travel, robot.wheelbase, sideways);
+[[nodiscard]] inline BodyMotion body_motion(const WheelTravel& travel, double wheelbase) {
+  return {0.5 * (travel.left + travel.right), 0.0, (travel.right - travel.left) / wheelbase};
 }
 
-/// What two wheels of this robot show of it, or would if it had them.
-[[nodiscard]] inline WheelTravel wheel_travel(const BodyMotion& motion, const Robot& robot) {
-  const double apart = 0.5 * robot.wheelbase * motion.turn;
+/// What two wheels that are so far apart show of it, or would if the robot had them.
+[[nodiscard]] inline WheelTravel wheel_travel(const BodyMotion& motion, double wheelbase) {
+  const double apart = 0.5 * wheelbase * motion.turn;
   return {motion.forward - apart, motion.forward + apart};
 }
+[[nodiscard]] inline WheelTravel wheel_travel(const BodyMotion& motion, const Robot& robot) {
+  return wheel_travel(motion, robot.wheelbase);
+}
 
-/// Of a whole row, by the wheels or by wheels and gyro together.
-[[nodiscard]] inline BodyMotion body_motion(const MotionRows& drive, std::size_t row,
+/// Mean of what they go, m, each counted forwards.
+[[nodiscard]] inline double mean_travel(const BodyMotion& motion, const Robot& robot) {
+  return std::max(std::abs(motion.forward), 0.5 * robot.wheelbase * std::abs(motion.turn));
+}
+
+/// Two wheels' own travels in a row; of another drive what two wheels would show of its wheels'
+/// motion.
+[[nodiscard]] inline WheelTravel own_travel(const MotionRows& drive, std::size_t row,
                                             const Robot& robot) {
-  return body_motion({drive.left[row], drive.right[row]}, robot, drive.slip(row));
+  return drive.pair.empty() ? wheel_travel(drive.wheel_motion(row), robot) : drive.pair.at(row);
 }
 
-/// Two wheels travel so much more in the row.
-inline void add_travel(MotionRows& drive, std::size_t row, const WheelTravel& more) {
-  drive.left[row] += more.left;
-  drive.right[row] += more.right;
+/// The travels by which two wheels' noise is reckoned, of a unicycle that of two wheels at its
+/// wheelbase. With a gyro as both say: of the wheels alone, rows that err towards a larger turn
+/// would count less than those that err the other way, and all turns seem larger than the wheels
+/// say.
+[[nodiscard]] inline WheelTravel noisy_travel(const MotionRows& drive, std::size_t row,
+                                              const Robot& robot) {
+  return drive.gyro.empty() ? own_travel(drive, row, robot)
+                            : wheel_travel(drive.motion(row), robot);
 }
 
-/// The body moves so much more in the row; to the side only where its drive can.
+/// The body moves so much more in the row, its wheels too where no gyro is taken in; to the side
+/// only where its drive can.
 inline void add_motion(MotionRows& drive, std::size_t row, const BodyMotion& more,
                        const Robot& robot) {
-  add_travel(drive, row, {more.forward, more.forward});
-  add_travel(drive, row, wheel_travel({0.0, 0.0, more.turn}, robot));
+  drive.forward[row] += more.forward;
+  drive.turn[row] += more.turn;
   if (!drive.sideways.empty()) drive.sideways[row] += more.sideways;
+  if (drive.pair.empty() || !drive.gyro.empty()) return;
+  const WheelTravel shown = wheel_travel(more, robot);
+  drive.pair.left[row] += shown.left;
+  drive.pair.right[row] += shown.right;
 }
 
 }  // namespace trussmap

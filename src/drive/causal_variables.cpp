@@ -32,7 +32,7 @@ CausalRow CausalVariables::next(const WheelWay& wheels, const BodyMotion& togeth
   const double travel = together.forward;
   const double turn = together.turn;
   const double way = std::hypot(travel, together.sideways);
-  row.kind = motion_kind(wheels.left, wheels.right, duration, wheels.sideways);
+  row.kind = motion_kind(wheels.travel, duration, wheels.sideways);
   row.t = t_ + 0.5 * duration;
   row.t_end = t_ + duration;
   row.distance = distance_ + 0.5 * way;
@@ -53,8 +53,8 @@ CausalRow CausalVariables::next(const WheelWay& wheels, const BodyMotion& togeth
   const bool begins = row.kind != kind_;
   row.starts = begins && drives ? 1.0 : 0.0;
   row.spins = begins && row.kind == MotionKind::spinning ? 1.0 : 0.0;
-  row.reverses_left = reversal(sense_left_, sense_after(sense_left_, wheels.left));
-  row.reverses_right = reversal(sense_right_, sense_after(sense_right_, wheels.right));
+  row.reverses_left = reversal(sense_left_, sense_after(sense_left_, wheels.travel.left));
+  row.reverses_right = reversal(sense_right_, sense_after(sense_right_, wheels.travel.right));
   return row;
 }
 
@@ -71,8 +71,8 @@ void CausalVariables::take(const WheelWay& wheels, const BodyMotion& together, d
   travelled_ += together.forward;
   turned_ += together.turn;
   distance_ = row.distance_end;
-  sense_left_ = sense_after(sense_left_, wheels.left);
-  sense_right_ = sense_after(sense_right_, wheels.right);
+  sense_left_ = sense_after(sense_left_, wheels.travel.left);
+  sense_right_ = sense_after(sense_right_, wheels.travel.right);
 }
 
 }  // namespace trussmap

@@ -38,8 +38,7 @@ struct CausalRow {
 
 /// What a row's wheels show.
 struct WheelWay {
-  double left = 0.0;      ///< m
-  double right = 0.0;     ///< m
+  WheelTravel travel;     ///< as own_travel
   double sideways = 0.0;  ///< m to the left
 };
 

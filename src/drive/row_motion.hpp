@@ -14,59 +14,41 @@
 namespace trussmap {
 
 struct RowMotion {
-  BodyMotion body;                 ///< as the wheels show it, or wheels and gyro together
-  double left = 0.0, right = 0.0;  ///< m, travels of two wheels that show this
-  double wheelbase = 0.0;          ///< m, between them
-  double length = 0.0;             ///< m, of a robot that steers
-  bool front = false;              ///< its measured wheel is the steered one
-  double duration = 0.0;           ///< s
-  double gyro_turn = 0.0;          ///< rad
-  double gyro_along = 0.0;         ///< as GyroShare::along
-  double gyro_aside = 0.0;         ///< as GyroShare::aside
-  double gyro_share = 0.0;         ///< as GyroShare::turn
+  BodyMotion body;          ///< as the wheels show it, or wheels and gyro together
+  double wheelbase = 0.0;   ///< m, of a left and a right wheel
+  double length = 0.0;      ///< m, of a robot that steers
+  bool front = false;       ///< its measured wheel is the steered one
+  double duration = 0.0;    ///< s
+  double gyro_turn = 0.0;   ///< rad
+  double gyro_along = 0.0;  ///< as GyroShare::along
+  double gyro_aside = 0.0;  ///< as GyroShare::aside
+  double gyro_share = 0.0;  ///< as GyroShare::turn
   bool gyro_reads = false;
   const std::vector<WheelColumn>* wheels = nullptr;  ///< of the drive, where it has other wheels
   std::size_t row = 0;                               ///< of the drive
 
-  /// What so much more of the two wheels' travels adds.
-  [[nodiscard]] BodyMotion by_wheels(double more_left, double more_right) const {
-    return body_motion({more_left, more_right}, wheelbase);
-  }
   /// Other wheels than two, of this drive.
   void set_wheels(const MotionRows& drive, std::size_t number) {
     wheels = drive.wheels.empty() ? nullptr : &drive.wheels;
     row = number;
   }
-  /// What the wheels show.
-  void set(const WheelTravel& travel, double sideways, const Robot& robot) {
-    body = body_motion(travel, robot, sideways);
-    left = travel.left;
-    right = travel.right;
-  }
-  /// The wheels show so much more.
-  void add(const BodyMotion& more, const Robot& robot) {
-    const WheelTravel travel = wheel_travel(more, robot);
-    set({left + travel.left, right + travel.right}, body.sideways + more.sideways, robot);
-  }
 };
 
-/// Of two wheels, or of what two wheels would show.
-[[nodiscard]] inline RowMotion row_motion(const WheelTravel& travel, double sideways,
-                                          double duration, const Robot& robot) {
+[[nodiscard]] inline RowMotion row_motion(const BodyMotion& body, double duration,
+                                          const Robot& robot) {
   RowMotion row;
+  row.body = body;
   row.wheelbase = robot.wheelbase;
   row.length = robot.length;
   row.front = robot.drive == DriveKind::tricycle;
   row.duration = duration;
-  row.set(travel, sideways, robot);
   return row;
 }
 
 /// A row as its wheels show it, or wheels and gyro together.
 [[nodiscard]] inline RowMotion shown_motion(const MotionRows& drive, std::size_t row,
                                             const Robot& robot) {
-  RowMotion shown =
-      row_motion({drive.left[row], drive.right[row]}, drive.slip(row), drive.duration(row), robot);
+  RowMotion shown = row_motion(drive.motion(row), drive.duration(row), robot);
   shown.set_wheels(drive, row);
   return shown;
 }
@@ -74,7 +56,7 @@ struct RowMotion {
 /// Wheels and gyro each for itself.
 [[nodiscard]] inline RowMotion row_motion(const GyroShare& gyro, double duration,
                                           const Robot& robot) {
-  RowMotion row = row_motion({gyro.left, gyro.right}, gyro.sideways, duration, robot);
+  RowMotion row = row_motion(gyro.wheels, duration, robot);
   row.gyro_turn = row.body.turn + gyro.excess;
   row.gyro_along = gyro.along;
   row.gyro_aside = gyro.aside;

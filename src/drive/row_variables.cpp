@@ -91,11 +91,12 @@ std::vector<double> beginnings(const std::vector<MotionKind>& kinds, MotionKind 
 
 }  // namespace
 
-MotionKind motion_kind(double left, double right, double duration, double sideways) {
+MotionKind motion_kind(const WheelTravel& travel, double duration, double sideways) {
+  const auto [left, right] = travel;
   if (sideways != 0.0) {  // who moves to the side drives as who moves ahead
     const double ahead = 0.5 * (left + right);
     const double more = std::hypot(ahead, sideways) - ahead;
-    return motion_kind(left + more, right + more, duration);
+    return motion_kind({left + more, right + more}, duration);
   }
   const double fastest = std::max(std::abs(left), std::abs(right));
   if (fastest < kStandingSpeed * duration) return MotionKind::standing;
@@ -103,12 +104,12 @@ MotionKind motion_kind(double left, double right, double duration, double sidewa
   return MotionKind::driving;
 }
 
-std::vector<MotionKind> motion_kinds(const MotionRows& drive) {
+std::vector<MotionKind> motion_kinds(const MotionRows& drive, const Robot& robot) {
   std::vector<MotionKind> kinds;
   kinds.reserve(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    kinds.push_back(motion_kind(drive.wheel_left(row), drive.wheel_right(row), drive.duration(row),
-                                drive.wheel_slip(row)));
+    kinds.push_back(motion_kind(own_travel(drive, row, robot), drive.duration(row),
+                                drive.wheel_motion(row).sideways));
   }
   return kinds;
 }
@@ -137,41 +138,38 @@ void take_turning(const MotionRows& drive, const std::vector<MotionKind>& kinds,
   }
 }
 
-std::vector<double> wheel_travels(const MotionRows& drive,
-                                  double (MotionRows::*wheel)(std::size_t) const) {
+std::vector<double> wheel_travels(const MotionRows& drive, const Robot& robot,
+                                  double WheelTravel::*wheel) {
   std::vector<double> travels(drive.rows());
-  for (std::size_t row = 0; row < travels.size(); ++row) travels[row] = (drive.*wheel)(row);
+  for (std::size_t row = 0; row < travels.size(); ++row) {
+    travels[row] = own_travel(drive, row, robot).*wheel;
+  }
   return travels;
 }
 
 /// Everything but the pose, in the middle of each row.
 RowVariables drive_variables(const MotionRows& drive, const Robot& robot, int session) {
   const std::size_t rows = drive.rows();
-  const std::vector<MotionKind> kinds = motion_kinds(drive);
+  const std::vector<MotionKind> kinds = motion_kinds(drive, robot);
   const std::vector<Span> spans = windows(drive, kinds);
   RowVariables variables;
-  std::vector<double> travel(rows);
-  std::vector<double> turn(rows);
   std::vector<double>& t = variables["t"];
   std::vector<double>& distance = variables["distance"];
   double driven = 0.0;
   for (std::size_t row = 0; row < rows; ++row) {
-    const BodyMotion motion = body_motion(drive, row, robot);
-    travel[row] = motion.forward;
-    turn[row] = motion.turn;
     t.push_back(drive.t[row] - 0.5 * drive.duration(row) - drive.start());
     distance.push_back(driven + 0.5 * drive.way(row));
     driven += drive.way(row);
   }
-  variables["speed"] = smoothed_rate(drive, spans, travel);
-  variables["turn_rate"] = smoothed_rate(drive, spans, turn);
+  variables["speed"] = smoothed_rate(drive, spans, drive.forward);
+  variables["turn_rate"] = smoothed_rate(drive, spans, drive.turn);
   variables["acceleration"] = slopes(drive, spans, variables["speed"]);
   take_turning(drive, kinds, variables);
   variables["session"] = std::vector<double>(rows, session);
   variables["starts"] = beginnings(kinds, MotionKind::driving);
   variables["spins"] = beginnings(kinds, MotionKind::spinning);
-  variables["reverses_left"] = reversals(wheel_travels(drive, &MotionRows::wheel_left));
-  variables["reverses_right"] = reversals(wheel_travels(drive, &MotionRows::wheel_right));
+  variables["reverses_left"] = reversals(wheel_travels(drive, robot, &WheelTravel::left));
+  variables["reverses_right"] = reversals(wheel_travels(drive, robot, &WheelTravel::right));
   for (const Covariate& covariate : drive.covariates) variables[covariate.name] = covariate.values;
   return variables;
 }
@@ -181,7 +179,7 @@ RowVariables drive_variables(const MotionRows& drive, const Robot& robot, int se
 RowVariables row_variables(const MotionRows& drive, const Robot& robot, const Pose& start,
                            const std::vector<Pose>& path, int session) {
   if (!drive.steered.empty()) {
-    return row_variables(unsteered(drive, robot), robot, start, path, session);
+    return row_variables(unsteered(drive), robot, start, path, session);
   }
   const std::size_t rows = drive.rows();
   if (path.size() != rows) throw std::invalid_argument("a path has a pose per row of its drive");
@@ -203,10 +201,10 @@ RowVariables instant_variables(const MotionRows& drive, const Robot& robot,
                                int session) {
   if (poses.size() != instants.size()) throw std::invalid_argument("an instant has one pose");
   if (!drive.steered.empty()) {
-    return instant_variables(unsteered(drive, robot), robot, instants, poses, session);
+    return instant_variables(unsteered(drive), robot, instants, poses, session);
   }
   const RowVariables by_row = drive_variables(drive, robot, session);
-  const std::vector<MotionKind> kinds = motion_kinds(drive);
+  const std::vector<MotionKind> kinds = motion_kinds(drive, robot);
   std::vector<std::size_t> rows;
   rows.reserve(instants.size());
   for (const double t : instants) rows.push_back(row_at(drive, t));

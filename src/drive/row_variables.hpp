@@ -39,11 +39,11 @@ inline constexpr double kRateWindow = 1.0;
 
 enum class MotionKind { standing, spinning, driving };
 
-/// By a row's travels (m), duration (s) and way to the left (m).
-[[nodiscard]] MotionKind motion_kind(double left, double right, double duration,
+/// By a row's travels (own_travel), duration (s) and way to the left (m).
+[[nodiscard]] MotionKind motion_kind(const WheelTravel& travel, double duration,
                                      double sideways = 0.0);
 /// Kind of motion of each row.
-[[nodiscard]] std::vector<MotionKind> motion_kinds(const MotionRows& drive);
+[[nodiscard]] std::vector<MotionKind> motion_kinds(const MotionRows& drive, const Robot& robot);
 
 /// `path`: pose at the end of each row, from `start`. Throws std::invalid_argument where its length
 /// is not the drive's.

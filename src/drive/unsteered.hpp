@@ -5,28 +5,28 @@
 // wheels, or wheels and gyro, show by the angles as they were read.
 #pragma once
 
-#include "drive/body_motion.hpp"
 #include "trussmap/recording.hpp"
+#include "trussmap/robot.hpp"
 
 #include <cstddef>
 
 namespace trussmap {
 
-/// `left` and `right` as they were, where no gyro is taken in; where one is, up to what the changed
-/// derivatives do to its weights.
-[[nodiscard]] inline MotionRows unsteered(MotionRows drive, const Robot& robot) {
+/// `forward` and `turn` as they were, where no gyro is taken in; where one is, up to what the
+/// changed derivatives do to its weights.
+[[nodiscard]] inline MotionRows unsteered(MotionRows drive) {
   for (std::size_t row = 0; row < drive.steered.size(); ++row) {
     auto [ahead, turn] = drive.steered[row];
     if (!drive.gyro.empty()) {
       GyroShare& gyro = drive.gyro[row];
-      const WheelTravel added = wheel_travel({ahead, 0.0, turn}, robot);
-      gyro.left -= added.left;
-      gyro.right -= added.right;
+      gyro.wheels.forward -= ahead;
+      gyro.wheels.turn -= turn;
       gyro.excess += turn;
       ahead -= gyro.along * turn;
       turn *= 1.0 - gyro.turn;
     }
-    add_travel(drive, row, wheel_travel({-ahead, 0.0, -turn}, robot));
+    drive.forward[row] -= ahead;
+    drive.turn[row] -= turn;
   }
   drive.steered.clear();
   return drive;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "drive/well_formed.hpp"
 
+#include "drive/body_motion.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -43,10 +44,16 @@ void require_drive(const DrivenRecording& recording) {
     if (drive.t[row] > drive.t[row - 1]) continue;
     refuse(recording, joined("t of the drive does not increase in row ", row, ", counted from 0"));
   }
-  require_rows(recording, "left", drive.left);
-  require_finite(recording, "left", drive.left);
-  require_rows(recording, "right", drive.right);
-  require_finite(recording, "right", drive.right);
+  const auto require_column = [&](const std::string& name, const std::vector<double>& column) {
+    require_rows(recording, name, column);
+    require_finite(recording, name, column);
+  };
+  if (drive.of_two_wheels()) {
+    require_column("left", drive.pair.left);
+    require_column("right", drive.pair.right);
+  }
+  require_column("forward", drive.forward);
+  require_column("turn", drive.turn);
   if (drive.has_compass()) require_rows(recording, "heading", drive.heading);
   if (std::any_of(drive.heading.begin(), drive.heading.end(),
                   [](double reading) { return std::isinf(reading); })) {
@@ -57,9 +64,18 @@ void require_drive(const DrivenRecording& recording) {
                   [](double reading) { return std::isinf(reading); })) {
     refuse(recording, "column yaw_rate of the drive is infinite in a row");
   }
-  for (const Covariate& one : drive.covariates) {
-    require_rows(recording, one.name, one.values);
-    require_finite(recording, one.name, one.values);
+  for (const Covariate& one : drive.covariates) require_column(one.name, one.values);
+}
+
+void require_wheelbase(const DrivenRecording& recording, const Robot& robot) {
+  constexpr double kRounding = 1e-9;
+  const MotionRows& drive = recording.drive;
+  for (std::size_t row = 0; row < drive.pair.left.size() && drive.gyro.empty(); ++row) {
+    const double turn = body_motion(drive.pair.at(row), robot.wheelbase).turn;
+    if (std::abs(turn - drive.turn[row]) <= kRounding * (1.0 + std::abs(turn))) continue;
+    refuse(recording,
+           joined("its wheels turn it otherwise than two that are ", short_text(robot.wheelbase),
+                  " m apart, expected with_wheels with the robot of the model"));
   }
 }
 
@@ -146,15 +162,16 @@ double clock_slack(const DriveColumns& drive) {
   return 1e-9 + 8.0 * std::numeric_limits<double>::epsilon() * std::abs(drive.t.back());
 }
 
-void require_well_formed(const DrivenRecording& recording) {
+void require_well_formed(const DrivenRecording& recording, const Robot& robot) {
   require_drive(recording);
+  require_wheelbase(recording, robot);
   require_sightings(recording);
   require_places(recording);
   require_loops(recording);
 }
 
-void require_well_formed(const std::vector<DrivenRecording>& recordings) {
-  for (const DrivenRecording& one : recordings) require_well_formed(one);
+void require_well_formed(const std::vector<DrivenRecording>& recordings, const Robot& robot) {
+  for (const DrivenRecording& one : recordings) require_well_formed(one, robot);
 }
 
 }  // namespace trussmap

@@ -16,9 +16,9 @@ namespace trussmap {
 
 /// Throws std::invalid_argument, naming the recording, the column and the place, where a drive has
 /// fewer than two rows or columns that differ in length, times do not increase (of sightings and
-/// truth: decrease), a sighting lies outside the drive or has a bearing without a range, or a
-/// number is not finite that must be.
-void require_well_formed(const DrivenRecording& recording);
-void require_well_formed(const std::vector<DrivenRecording>& recordings);
+/// truth: decrease), a sighting lies outside the drive or has a bearing without a range, a number
+/// is not finite that must be, or its two wheels turn it by another wheelbase than this robot's.
+void require_well_formed(const DrivenRecording& recording, const Robot& robot);
+void require_well_formed(const std::vector<DrivenRecording>& recordings, const Robot& robot);
 
 }  // namespace trussmap

@@ -108,11 +108,9 @@ std::vector<double> reading_of(const Recording& recording, const std::string& na
           there + " are of");
 }
 
-void take_body(MotionRows& drive, std::size_t row, const Eigen::Vector3d& motion,
-               const Robot& robot) {
-  const WheelTravel travel = wheel_travel({motion[0], motion[1], motion[2]}, robot);
-  drive.left[row] = travel.left;
-  drive.right[row] = travel.right;
+void take_body(MotionRows& drive, std::size_t row, const Eigen::Vector3d& motion) {
+  drive.forward[row] = motion[0];
+  drive.turn[row] = motion[2];
   if (!drive.sideways.empty()) drive.sideways[row] = motion[1];
 }
 
@@ -137,13 +135,18 @@ void take_unicycle(std::vector<WheelColumn>& columns, const Robot& robot, Driven
   MotionRows& drive = taken.drive;
   drive.unicycle = robot.columns;
   if (columns.size() == 1) drive.unicycle.emplace_back("yaw_rate");
-  const std::vector<double>& travel = columns.front().reading;
-  const std::vector<double> turn =
-      columns.size() > 1 ? std::move(columns[1].reading) : turn_of_gyro(taken, drive);
-  for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const WheelTravel shown = wheel_travel({travel[row], 0.0, turn[row]}, robot);
-    drive.left.push_back(shown.left);
-    drive.right.push_back(shown.right);
+  drive.turn = columns.size() > 1 ? std::move(columns[1].reading) : turn_of_gyro(taken, drive);
+  drive.forward = std::move(columns.front().reading);
+}
+
+void take_pair(WheelPair pair, const Robot& robot, MotionRows& drive) {
+  if (!(robot.wheelbase > 0.0)) throw std::invalid_argument("the wheelbase must be above 0 m");
+  drive.pair = std::move(pair);
+  const std::size_t rows = std::min(drive.pair.left.size(), drive.pair.right.size());
+  for (std::size_t row = 0; row < rows; ++row) {
+    const BodyMotion motion = body_motion(drive.pair.at(row), robot.wheelbase);
+    drive.forward.push_back(motion.forward);
+    drive.turn.push_back(motion.turn);
   }
 }
 
@@ -244,8 +247,9 @@ DrivenRecording with_wheels(Recording recording, const Robot& robot) {
   MotionRows& drive = result.drive;
   static_cast<DriveColumns&>(drive) = std::move(static_cast<DriveColumns&>(recording.drive));
   if (robot.drive == DriveKind::differential || !named) {
-    drive.left = named ? std::move(wheels[0].reading) : std::move(recording.drive.left);
-    drive.right = named ? std::move(wheels[1].reading) : std::move(recording.drive.right);
+    take_pair(named ? WheelPair{std::move(wheels[0].reading), std::move(wheels[1].reading)}
+                    : WheelPair{std::move(recording.drive.left), std::move(recording.drive.right)},
+              robot, drive);
     return result;
   }
   if (robot.drive == DriveKind::unicycle) {
@@ -289,8 +293,8 @@ WheelKinematics::WheelKinematics(const Robot& robot) : robot_(robot), steers_(ha
 }
 
 void WheelKinematics::prepare(MotionRows& drive, std::size_t rows) const {
-  drive.left.assign(rows, 0.0);
-  drive.right.assign(rows, 0.0);
+  drive.forward.assign(rows, 0.0);
+  drive.turn.assign(rows, 0.0);
   drive.sideways.assign(!steers_ && !matrix_.row(1).isZero(0.0) ? rows : 0, 0.0);
   drive.wheels.clear();
   for (const std::string& name : robot_.columns) {
@@ -309,13 +313,13 @@ bool WheelKinematics::move(MotionRows& drive, std::size_t row, const SteeringCha
       drive.wheels[k].by_reading[row] = {by[0], by[1], by[2]};
       motion += drive.wheels[k].reading[row] * by;
     }
-    take_body(drive, row, motion, robot_);
+    take_body(drive, row, motion);
     return true;
   }
   const SteeredMotion body =
       steered_motion(robot_, drive.wheels[0].reading[row], drive.wheels[1].reading[row], change);
   if (!body.possible) return false;
-  take_body(drive, row, body.motion, robot_);
+  take_body(drive, row, body.motion);
   drive.wheels[1].gain[row] = 1.0 + change.gain;
   for (std::size_t k = 0; k < 2; ++k) {
     const Eigen::Vector3d& by = body.by_reading[k];

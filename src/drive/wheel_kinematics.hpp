@@ -30,7 +30,7 @@ class WheelKinematics {
   /// So many rows for each of the robot's columns, in their order, all of them 0.
   void prepare(MotionRows& drive, std::size_t rows) const;
 
-  /// From the row's readings its `left`, `right`, `sideways` and `by_reading`, the wheel steered
+  /// From the row's readings its `forward`, `turn`, `sideways` and `by_reading`, the wheel steered
   /// as a change has it. False, and nothing done, where a steering angle leaves the measured wheel
   /// no way ahead.
   [[nodiscard]] bool move(MotionRows& drive, std::size_t row,

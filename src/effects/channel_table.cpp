@@ -108,7 +108,8 @@ std::vector<ChannelRecord> single_records() {
        .of_drive = has_two_wheels,
        .wheel_pattern =
            [](double g, const RowMotion& row) {
-             return as_pattern(row.by_wheels(g * row.left, 0.0));
+             const double more = g * wheel_travel(row.body, row.wheelbase).left;
+             return as_pattern(body_motion({more, 0.0}, row.wheelbase));
            },
        .phrase = {"the left wheel rolls", "further than it says", "less far than it says"},
        .noun = "left wheel's error",
@@ -117,7 +118,8 @@ std::vector<ChannelRecord> single_records() {
        .of_drive = has_two_wheels,
        .wheel_pattern =
            [](double g, const RowMotion& row) {
-             return as_pattern(row.by_wheels(0.0, g * row.right));
+             const double more = g * wheel_travel(row.body, row.wheelbase).right;
+             return as_pattern(body_motion({0.0, more}, row.wheelbase));
            },
        .phrase = {"the right wheel rolls", "further than it says", "less far than it says"},
        .noun = "right wheel's error",
@@ -131,8 +133,8 @@ std::vector<ChannelRecord> single_records() {
        .of_drive = has_two_wheels,
        .wheel_pattern =
            [](double g, const RowMotion& row) {
-             return DrivePattern{.advance = 0.25 * g * (row.right - row.left),
-                                 .turn = row.by_wheels(0.0, g * row.body.forward).turn};
+             return DrivePattern{.advance = 0.25 * g * row.wheelbase * row.body.turn,
+                                 .turn = g * row.body.forward / row.wheelbase};
            },
        .phrase = {"the right wheel is", "larger than the left", "smaller than the left"},
        .noun = "difference of the wheels",

@@ -104,7 +104,7 @@ MotionRows steered(MotionRows drive, const Robot& robot, const std::vector<Effec
     }
     // What replicas and noise made of the row stays.
     const Eigen::Vector3d added = after.motion - steered_motion(robot, travel, angle).motion;
-    add_travel(drive, row, wheel_travel({added[0], 0.0, added[2]}, robot));
+    add_motion(drive, row, {added[0], 0.0, added[2]}, robot);
     drive.steered.push_back({added[0], added[2]});
     drive.wheels[1].gain[row] = 1.0 + more[row].gain;
     for (std::size_t k = 0; k < 2; ++k) {

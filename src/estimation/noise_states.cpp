@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/noise_states.hpp"
 
-#include "drive/body_motion.hpp"
 #include "drive/legs.hpp"
 #include "drive/row_motion.hpp"
 #include "drive/row_variables.hpp"
@@ -41,7 +40,7 @@ ViewVector unit_view(const ProcessToLay& lasting, const Measurement& one) {
   const MotionRows& drive = lasting.drive_of(one);
   const std::size_t row = row_at(drive, lasting.problem.time_of(one.from));
   const double duration = std::max(drive.duration(row), 1e-9);
-  const BodyMotion motion = body_motion(drive, row, lasting.robot);
+  const BodyMotion motion = drive.motion(row);
   return one.kind->unit_view(lasting.channel, one, motion.forward / duration,
                              motion.turn / duration);
 }

@@ -56,7 +56,7 @@ SessionSegments segments_of(const SessionPoses& poses, const MotionRows& drive,
   parallel_for(ends.size(), [&](std::size_t k) {
     const auto& [from, to] = ends[k];
     std::vector<SegmentRow>& rows = segments.rows[k];
-    rows = segment_rows(drive, from->first, to->first, model.robot);
+    rows = segment_rows(drive, from->first, to->first);
     Measurement& one = segments.measured[k];
     one = kinds::segment_measured(segment_motion(rows),
                                   segment_covariance(drive, rows, model.robot, model.noise));
@@ -153,7 +153,7 @@ GrowingProblem with_session(GrowingProblem growing, const DrivenRecording& recor
   SessionPoses poses;
   poses.session = static_cast<int>(problem.sessions.size());
   problem.sessions.push_back(recording.name);
-  const RowsUsed used = rows_used(recording, model.robot, options);
+  const RowsUsed used = rows_used(recording, options);
   if (!options.left_out.empty()) poses.left_out = options.left_out[idx(poses.session)];
   for (const double t : session_instants(recording, used, model.robot, options, poses.left_out)) {
     poses.at[t] = static_cast<int>(problem.poses.size());

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/segment_motion.hpp"
 
-#include "drive/body_motion.hpp"
 #include "drive/unit_arc.hpp"
 #include "odometry/row_reckoner.hpp"
 
@@ -63,12 +62,10 @@ Step step_of(const SegmentRow& row, const std::vector<const std::vector<DrivePat
 
 }  // namespace
 
-std::vector<SegmentRow> segment_rows(const MotionRows& drive, double from, double to,
-                                     const Robot& robot) {
+std::vector<SegmentRow> segment_rows(const MotionRows& drive, double from, double to) {
   std::vector<SegmentRow> rows;
   for (const DriveRow& row : rows_between(drive, from, to)) {
-    const BodyMotion motion =
-        body_motion(travel_of(drive, row), robot, row.part * drive.slip(row.row));
+    const BodyMotion motion = motion_of(drive, row);
     const double reading = drive.has_compass() && row.ends ? drive.heading[row.row] : kAbsent;
     rows.push_back(
         {row.row, row.part, motion.forward, motion.turn, row.duration, reading, motion.sideways});

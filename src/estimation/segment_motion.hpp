@@ -73,9 +73,8 @@ struct SegmentMotion {
   double mean_heading = kAbsent;
 };
 
-/// Rows between two times, with the wheelbase's turns.
-[[nodiscard]] std::vector<SegmentRow> segment_rows(const MotionRows& drive, double from, double to,
-                                                   const Robot& robot);
+/// Rows between two times.
+[[nodiscard]] std::vector<SegmentRow> segment_rows(const MotionRows& drive, double from, double to);
 
 /// Compass readings among the rows.
 [[nodiscard]] int readings_of(const std::vector<SegmentRow>& rows);

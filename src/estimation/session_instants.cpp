@@ -13,7 +13,7 @@
 namespace trussmap {
 namespace {
 
-std::vector<std::size_t> truth_rows_used(const DrivenRecording& recording, const Robot& robot,
+std::vector<std::size_t> truth_rows_used(const DrivenRecording& recording,
                                          const ProblemOptions& options) {
   std::vector<std::size_t> used;
   if (!options.truth || recording.truth.empty()) return used;
@@ -25,7 +25,7 @@ std::vector<std::size_t> truth_rows_used(const DrivenRecording& recording, const
   for (std::size_t k = 0; k < recording.truth.size(); ++k) {
     const double t = recording.truth[k].t;
     if (t < drive.start() || t > drive.t.back()) continue;
-    for (const SegmentRow& row : segment_rows(drive, from, t, robot)) {
+    for (const SegmentRow& row : segment_rows(drive, from, t)) {
       path += std::abs(row.path);
       turn += std::abs(row.turn);
     }
@@ -98,9 +98,8 @@ std::vector<double> outside(std::vector<double> times, const std::vector<TimeSpa
 
 }  // namespace
 
-RowsUsed rows_used(const DrivenRecording& recording, const Robot& robot,
-                   const ProblemOptions& options) {
-  RowsUsed used{truth_rows_used(recording, robot, options), fixes_used(recording, options),
+RowsUsed rows_used(const DrivenRecording& recording, const ProblemOptions& options) {
+  RowsUsed used{truth_rows_used(recording, options), fixes_used(recording, options),
                 options.loops && !recording.loops.empty()};
   if (recording.sightings.empty() && used.truth.empty() && used.fixes.empty() && !used.loops) {
     throw InputError(
@@ -117,8 +116,7 @@ std::vector<double> session_instants(const DrivenRecording& recording, const Row
   std::vector<double> instants;
   for (std::size_t k = 0; k < times.size(); ++k) {
     if (k > 0 && !overlaps_any({times[k - 1], times[k]}, left_out)) {
-      const std::vector<SegmentRow> rows =
-          segment_rows(recording.drive, times[k - 1], times[k], robot);
+      const std::vector<SegmentRow> rows = segment_rows(recording.drive, times[k - 1], times[k]);
       for (const double t : motion_changes(recording.drive, rows, robot,
                                            {options.least_spin, options.least_drive})) {
         if (t > times[k - 1] && t < times[k]) instants.push_back(t);

@@ -18,8 +18,7 @@ struct RowsUsed {
 };
 
 /// Throws InputError where a recording has nothing in use that ties it to a place.
-[[nodiscard]] RowsUsed rows_used(const DrivenRecording& recording, const Robot& robot,
-                                 const ProblemOptions& options);
+[[nodiscard]] RowsUsed rows_used(const DrivenRecording& recording, const ProblemOptions& options);
 
 /// When something is measured, at both ends of loops, and at changes between spinning and driving,
 /// s, ascending; without instants inside what is left out, and those that would stand alone.

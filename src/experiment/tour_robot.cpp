@@ -82,7 +82,8 @@ Traversal TourRobot::with_readings(const std::vector<DrivenRow>& rows, double he
   Noise noise;
   noise.left = noise.right = wheels.noise;
   noise.compass = sd_of_mean_error(options_.compass_error);
-  MotionRows drive;
+  Recording recording;
+  Drive& drive = recording.drive;
   const double whole = heading_ - heading;
   double turned = 0.0;
   double spun = 0.0;  // as recorded, of which the whole turn is known
@@ -105,7 +106,9 @@ Traversal TourRobot::with_readings(const std::vector<DrivenRow>& rows, double he
   PoseEstimate start;
   start.pose.heading = believed_.heading;
   start.covariance(2, 2) = believed_.variance;
-  const PoseEstimate end = dead_reckon(start, drive, 0.0, drive.t.back(), robot, noise);
+  const double last = drive.t.back();
+  const PoseEstimate end =
+      dead_reckon(start, with_wheels(std::move(recording), robot).drive, 0.0, last, robot, noise);
   believed_ = {end.pose.heading, end.covariance(2, 2)};
   return {end.pose.position(), end.covariance.topLeftCorner<2, 2>()};
 }

@@ -41,11 +41,12 @@ void clear_drive(const DrivenRecording& recorded, const EffectParameters& border
                  ClearedRecording& result) {
   const MotionRows& drive = recorded.drive;
   MotionRows& clear = result.recording.drive;
+  clear.forward = drive.forward;
+  clear.turn = drive.turn;
+  clear.pair = drive.pair;
   result.slip.assign(drive.rows(), 0.0);
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const DrivePattern more = sum_at(border, offsets, session, row);
-    clear.left[row] = drive.left[row];
-    clear.right[row] = drive.right[row];
     add_motion(clear, row, {more.advance, 0.0, more.turn}, robot);
     result.slip[row] = more.slip;
     if (!drive.gyro.empty()) clear.gyro[row].excess = drive.gyro[row].excess + more.excess;

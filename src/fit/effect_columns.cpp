@@ -53,14 +53,14 @@ RowVariables event_variables(const DrivenRecording& recording, const Robot& robo
 
 }  // namespace
 
-void add_noise(const Vector2& missing, double excess, const Robot& robot, RowMotion& row) {
+void add_noise(const Vector2& missing, double excess, RowMotion& row) {
   Vector2 lacks = missing;
   if (row.gyro_reads) {
     // The noise of an excess is the wheels' in part, and the gyro's for the rest.
     row.gyro_turn += lacks[1] - (1.0 - row.gyro_share) * excess;
     lacks += excess * Vector2(row.gyro_along, row.gyro_share);
   }
-  row.add({lacks[0], 0.0, lacks[1]}, robot);
+  row.body = row.body + BodyMotion{lacks[0], 0.0, lacks[1]};
 }
 
 ShapeContext::ShapeContext(const std::vector<DrivenRecording>& recordings, const Robot& robot,
@@ -71,7 +71,7 @@ RowMotion ShapeContext::motion(std::size_t session, std::size_t row) const {
   RowMotion motion = row_motion(recordings_[session].drive, row, robot_);
   const SessionPath& path = paths_[session];
   if (path.missing.empty()) return motion;
-  add_noise(path.missing[row], path.excess.empty() ? 0.0 : path.excess[row], robot_, motion);
+  add_noise(path.missing[row], path.excess.empty() ? 0.0 : path.excess[row], motion);
   return motion;
 }
 

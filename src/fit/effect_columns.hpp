@@ -53,7 +53,7 @@ struct EffectColumns {
 };
 
 /// A row without its noise: `missing` and `excess` are as SessionPath has them.
-void add_noise(const Vector2& missing, double excess, const Robot& robot, RowMotion& row);
+void add_noise(const Vector2& missing, double excess, RowMotion& row);
 
 /// What shapes may speak of, for all sessions.
 class ShapeContext {

@@ -98,7 +98,7 @@ ModelFit model_fit(FitState state, const FitOptions& options) {
 
 ModelFit fit_model(const std::vector<DrivenRecording>& recordings, const Model& model,
                    const FitOptions& options) {
-  require_well_formed(recordings);
+  require_well_formed(recordings, model.robot);
   return model_fit(fit_recordings(recordings, model, fitter_options(options)), options);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fit/fitted_path.hpp"
 
+#include "drive/body_motion.hpp"
 #include "drive/row_variables.hpp"
 #include "parallel/parallel_for.hpp"
 
@@ -16,13 +17,13 @@ namespace {
 /// One session's rows under the effects.
 class Reckoner {
  public:
-  Reckoner(const MotionRows& drive, const Robot& robot, const EffectParameters& border,
-           const Eigen::VectorXd& offsets, int session)
-      : drive_(drive), robot_(robot), border_(border), offsets_(offsets), session_(idx(session)) {}
+  Reckoner(const MotionRows& drive, const EffectParameters& border, const Eigen::VectorXd& offsets,
+           int session)
+      : drive_(drive), border_(border), offsets_(offsets), session_(idx(session)) {}
 
   /// Motion over part of the drive, in the frame of its start.
   [[nodiscard]] Pose motion(double from, double to) const {
-    return motion(segment_rows(drive_, from, to, robot_));
+    return motion(segment_rows(drive_, from, to));
   }
   [[nodiscard]] Pose motion(const std::vector<SegmentRow>& rows) const {
     return segment_motion(rows, patterns(), offsets_).motion.displacement;
@@ -37,7 +38,6 @@ class Reckoner {
   }
 
   const MotionRows& drive_;
-  const Robot& robot_;
   const EffectParameters& border_;
   const Eigen::VectorXd& offsets_;
   std::size_t session_;
@@ -57,9 +57,10 @@ std::vector<Vector2> estimated_noise(const std::vector<SegmentRow>& rows, const 
     Influence A;
     A.col(0) = influences[k].block<3, 1>(0, 0);
     A.col(1) = influences[k].block<3, 1>(0, 2);
-    const double left = std::abs(rows[k].part * drive.wheel_left(rows[k].row)) + kLeastShare;
-    const double right = std::abs(rows[k].part * drive.wheel_right(rows[k].row)) + kLeastShare;
-    const ArcNoise wheels = wheel_arc_noise({left, right}, robot.wheelbase, {1.0, 1.0});
+    const WheelTravel own = rows[k].part * own_travel(drive, rows[k].row, robot);
+    const ArcNoise wheels =
+        wheel_arc_noise({std::abs(own.left) + kLeastShare, std::abs(own.right) + kLeastShare},
+                        robot.wheelbase, {1.0, 1.0});
     Matrix2 Q;
     Q << wheels.along, wheels.shared, wheels.shared, wheels.heading;
     if (!drive.gyro.empty()) {
@@ -91,7 +92,7 @@ std::vector<FittedRow> rows_between(const MotionRows& drive, const Robot& robot,
                                     const Reckoner& reckoner, const PoseNode& from,
                                     const Pose& at_from, const PoseNode& to, const Pose& at_to) {
   constexpr int kRounds = 3;  // the noise bends the path on which it acts
-  std::vector<SegmentRow> rows = segment_rows(drive, from.t, to.t, robot);
+  std::vector<SegmentRow> rows = segment_rows(drive, from.t, to.t);
   const Pose wanted = relative(at_from, at_to);
   std::vector<Vector2> missing(rows.size(), Vector2::Zero());
   for (int round = 0; round < kRounds; ++round) {
@@ -172,7 +173,7 @@ std::vector<SessionPath> fitted_paths(const std::vector<DrivenRecording>& record
   }
   for (std::size_t s = 0; s < recordings.size(); ++s) {
     const MotionRows& drive = recordings[s].drive;
-    const Reckoner reckoner(drive, robot, border, offsets, static_cast<int>(s));
+    const Reckoner reckoner(drive, border, offsets, static_cast<int>(s));
     SessionPath& path = paths[s];
     path.ends.resize(drive.rows());
     path.missing.assign(drive.rows(), Vector2::Zero());
@@ -181,7 +182,7 @@ std::vector<SessionPath> fitted_paths(const std::vector<DrivenRecording>& record
     const PoseNode& first_node = problem.poses[idx(first[s])];
     path.start = before(state.poses[idx(first[s])], reckoner.motion(drive.start(), first_node.t));
     Pose pose = path.start;
-    for (const SegmentRow& row : segment_rows(drive, drive.start(), first_node.t, robot)) {
+    for (const SegmentRow& row : segment_rows(drive, drive.start(), first_node.t)) {
       pose = compose(pose, reckoner.motion(std::vector<SegmentRow>{row}));
       path.ends[row.row] = pose;
     }
@@ -199,7 +200,7 @@ std::vector<SessionPath> fitted_paths(const std::vector<DrivenRecording>& record
     }
     pose = state.poses[idx(last[s])];
     for (const SegmentRow& row :
-         segment_rows(drive, problem.poses[idx(last[s])].t, drive.t.back(), robot)) {
+         segment_rows(drive, problem.poses[idx(last[s])].t, drive.t.back())) {
       pose = compose(pose, reckoner.motion(std::vector<SegmentRow>{row}));
       path.ends[row.row] = pose;
     }

@@ -171,11 +171,11 @@ void add_windows(const DrivenRecording& recording, const Robot& robot, double ho
   double way = 0.0;
   double reached = drive.start();
   for (std::size_t k = 0; k < all.size(); k += stride) {
-    for (const SegmentRow& row : segment_rows(drive, reached, all[k].from, robot)) {
+    for (const SegmentRow& row : segment_rows(drive, reached, all[k].from)) {
       way += std::abs(row.path);
     }
     reached = all[k].from;
-    const Window window{drive,       robot, segment_rows(drive, all[k].from, all[k].to, robot),
+    const Window window{drive,       robot, segment_rows(drive, all[k].from, all[k].to),
                         all[k].from, way,   ends};
     double driven = 0.0;
     for (const SegmentRow& row : window.rows) driven += std::abs(row.path);

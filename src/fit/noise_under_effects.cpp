@@ -41,14 +41,13 @@ RowNoise additions(const std::vector<ConstantEffect>& effects, const RowMotion& 
 }
 
 /// How what the effects add grows with the noise.
-Matrix3 growth(const std::vector<ConstantEffect>& effects, const RowMotion& row,
-               const Robot& robot) {
+Matrix3 growth(const std::vector<ConstantEffect>& effects, const RowMotion& row) {
   const RowNoise none = additions(effects, row);
   Matrix3 result;
   for (int k = 0; k < 3; ++k) {
     const RowNoise unit = RowNoise::Unit(k);
     RowMotion more = row;
-    add_noise({unit[0], unit[1]}, unit[2], robot, more);
+    add_noise({unit[0], unit[1]}, unit[2], more);
     result.col(k) = additions(effects, more) - none;
   }
   return result;
@@ -80,8 +79,8 @@ void step_noise_under_effects(const std::vector<SessionPath>& before, FitState& 
     const MotionRows& drive = fit.recordings[s].drive;
     parallel_for(path.missing.size(), [&](std::size_t row) {
       const RowMotion motion = row_motion(drive, row, fit.model.robot);
-      const RowNoise next = stepped(noise_in(before[s], row), noise_in(path, row),
-                                    growth(effects, motion, fit.model.robot));
+      const RowNoise next =
+          stepped(noise_in(before[s], row), noise_in(path, row), growth(effects, motion));
       path.missing[row] = next.head<2>();
       if (!path.excess.empty()) path.excess[row] = next[2];
     });

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "fit/online_odometry.hpp"
 
-#include "drive/body_motion.hpp"
 #include "estimation/mounted_views.hpp"
 #include "recording/variable_names.hpp"
 
@@ -81,8 +80,8 @@ CorrectedRow OnlineOdometry::drive(const WheelRow& row, std::span<const double> 
   check_covariates(covariates, inputs_);
   const GyroShare gyro = at_hand_.take(row);
   const ReckonedRow recorded = at_hand_.recorded(row, gyro);
-  const WheelWay wheels{gyro.left, gyro.right, gyro.sideways};
-  const BodyMotion both = at_hand_.body(recorded);
+  const WheelWay wheels = at_hand_.wheels(gyro);
+  const BodyMotion& both = recorded.motion;
   const OnlineFacts facts{variables_.next(wheels, both, row.duration), covariates};
   // Shapes that speak of the pose see it first as the row says, then as corrected.
   const bool twice = effects_.see_the_pose();

@@ -22,7 +22,7 @@ constexpr double kLeastVariance = 1e-12;
 bool shows_in_readings(const NoiseProcess& process) {
   if (process.process == ProcessKind::white) return false;
   if (process.channel == Channel::compass) return is_chain(process.process);
-  const RowMotion some = row_motion({0.5, 1.0}, 0.0, 1.0, Robot());
+  const RowMotion some = row_motion(BodyMotion{0.75, 0.0, 1.0}, 1.0, Robot());
   return acts_on(process.channel) == ActsOn::drives &&
          drive_pattern(process.channel, 1.0, some).turn != 0.0;
 }
@@ -50,12 +50,13 @@ ReadingScatter::ReadingScatter(const FitState& fit) {
     for (const SegmentRow& row : rows) {
       const SegmentMotion motion = segment_motion({row}, patterns, offsets).motion;
       turned += motion.displacement.heading;
-      const WheelTravel travel{row.part * drive.left[row.row], row.part * drive.right[row.row]};
+      const Robot& robot = fit.model.robot;
+      const WheelTravel travel = row.part * noisy_travel(drive, row.row, robot);
       Row next;
-      next.motion = row_motion(travel, 0.0, row.duration, fit.model.robot);
+      next.motion = row_motion(row.part * drive.motion(row.row), row.duration, robot);
       next.way = std::abs(row.path);
       next.turn = std::abs(row.turn);
-      next.wheels = arc_covariance(travel, row.duration, fit.model.robot, wheels_alone)(2, 2);
+      next.wheels = arc_covariance(travel, row.duration, robot, wheels_alone)(2, 2);
       // The row's own mean heading is its reading less its turn.
       next.y = std::isnan(row.reading) ? kAbsent
                                        : motion.mean_heading + motion.displacement.heading - turned;

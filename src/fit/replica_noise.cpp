@@ -41,8 +41,7 @@ void disturb_columns(std::size_t row, const Model& model, MotionRows& drive, Nor
   for (int k = 0; k < 3; ++k) {
     more += draw(std::sqrt(std::max(axes.eigenvalues()[k], 0.0))) * axes.eigenvectors().col(k);
   }
-  add_travel(drive, row, wheel_travel({more[0], 0.0, more[2]}, model.robot));
-  if (!drive.sideways.empty()) drive.sideways[row] += more[1];
+  add_motion(drive, row, {more[0], more[1], more[2]}, model.robot);
 }
 
 /// g of a process's channel, drawn for every row's end.
@@ -53,8 +52,7 @@ std::vector<double> drawn_gains(const NoiseProcess& process, const MotionRows& d
   double value = is_walk(process.process) ? 0.0 : draw(process.sd);
   int leg = 0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const double lag =
-        way ? 0.5 * std::abs(drive.left[row] + drive.right[row]) : drive.duration(row);
+    const double lag = way ? std::abs(drive.forward[row]) : drive.duration(row);
     const double middle = drive.t[row] - 0.5 * drive.duration(row);
     const double before = value;
     switch (process.process) {
@@ -129,16 +127,19 @@ void part_wheels_and_gyro(std::size_t session, Replica& replica, NormalDraws& dr
     const GyroShare& gyro = drive.gyro[row];
     if (!std::isfinite(gyro.variance)) continue;
     const double excess = with_effects(0.0, replica, patterns, row, &DrivePattern::excess);
-    const double along = gyro.along * excess;
-    const double apart = wheel_travel({0.0, 0.0, gyro.turn}, robot).right * excess;
-    add_travel(drive, row, {along - apart, along + apart});
-    if (!drive.sideways.empty()) drive.sideways[row] += gyro.aside * excess;
+    add_motion(drive, row, excess * BodyMotion{gyro.along, gyro.aside, gyro.turn}, robot);
     const double duration = drive.duration(row);
-    const double turn = body_motion(drive, row, robot).turn - excess;
+    const double turn = drive.turn[row] - excess;
     drive.yaw_rate[row] =
         (turn + draw(replica.fit.model.noise.gyro * std::sqrt(duration))) / duration;
   }
+  if (drive.gyro.empty()) return;
   drive.gyro.clear();
+  for (std::size_t row = 0; row < drive.pair.left.size(); ++row) {
+    const WheelTravel own = wheel_travel(drive.motion(row), robot);
+    drive.pair.left[row] = own.left;
+    drive.pair.right[row] = own.right;
+  }
 }
 
 void disturb_drive(std::size_t session, Replica& replica, NormalDraws& draw) {
@@ -147,17 +148,17 @@ void disturb_drive(std::size_t session, Replica& replica, NormalDraws& draw) {
   const auto patterns = drive_patterns(replica.border, session);
   const Robot& robot = replica.fit.model.robot;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    double& left = drive.left[row];
-    double& right = drive.right[row];
     const double duration = drive.duration(row);
-    const double turn = std::abs(body_motion(drive, row, robot).turn);
+    const double turn = std::abs(drive.turn[row]);
     const double heading = draw(std::sqrt(noise.heading_per_s * noise.heading_per_s * duration +
                                           noise.heading_per_rad * noise.heading_per_rad * turn));
     const double travel = draw(noise.travel_per_s * std::sqrt(duration));
     if (drive.wheels.empty()) {
-      const WheelTravel turned = wheel_travel({0.0, 0.0, heading}, robot);
-      left += draw(noise.left * std::sqrt(std::abs(left))) + travel + turned.left;
-      right += draw(noise.right * std::sqrt(std::abs(right))) + travel + turned.right;
+      const auto [left, right] = own_travel(drive, row, robot);
+      const WheelTravel more{draw(noise.left * std::sqrt(std::abs(left))) + travel,
+                             draw(noise.right * std::sqrt(std::abs(right))) + travel};
+      const BodyMotion turned{0.0, 0.0, heading};
+      add_motion(drive, row, body_motion(more, robot.wheelbase) + turned, robot);
     } else {
       disturb_columns(row, replica.fit.model, drive, draw);
     }

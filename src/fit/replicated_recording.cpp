@@ -106,7 +106,7 @@ void lead_through_poses(Replica& replica) {
         Vector2& missing = replica.paths[s].missing[row];
         // Who rests goes on resting; the other rows take its share in the next round.
         if (!drive.rests(row)) {
-          add_travel(drive, row, wheel_travel({missing[0], 0.0, missing[1]}, robot));
+          add_motion(drive, row, {missing[0], 0.0, missing[1]}, robot);
         }
         missing.setZero();
       }
@@ -151,7 +151,7 @@ std::vector<DrivenRecording> in_own_times(std::vector<DrivenRecording> recording
     take_events(recordings, s, model, Channel::fix_delay, timed.fixes, own.fixes);
     own.loops = std::move(timed.loops);
     std::vector<WheelColumn> wheels = std::move(own.drive.wheels);
-    own.drive = unsteered(std::move(timed.drive), model.robot);
+    own.drive = unsteered(std::move(timed.drive));
     own.drive.wheels = std::move(wheels);
     own.survey = std::move(timed.survey);
   }

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "drive/body_motion.hpp"
 #include "drive/row_variables.hpp"
 #include "fit/cleared_recording.hpp"
 #include "fit/fit_state.hpp"
@@ -28,8 +27,7 @@ Motion row_motion(const MotionRows& drive, std::size_t row, double from, double 
                   const Model& model) {
   const double begin = row == 0 ? drive.start() : drive.t[row - 1];
   const double part = (to - from) / (drive.t[row] - begin);
-  return {displacement_of(body_motion({part * drive.left[row], part * drive.right[row]},
-                                      model.robot, part * drive.slip(row))),
+  return {displacement_of(part * drive.motion(row)),
           row_covariance(drive, row, part, to - from, model.robot, model.noise)};
 }
 

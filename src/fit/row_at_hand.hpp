@@ -5,6 +5,7 @@
 #pragma once
 
 #include "drive/body_motion.hpp"
+#include "drive/causal_variables.hpp"
 #include "drive/row_motion.hpp"
 #include "drive/wheel_kinematics.hpp"
 #include "effects/channel_physics.hpp"
@@ -39,7 +40,8 @@ class RowAtHand {
     if (robot_.drive == DriveKind::unicycle && (columns() < 1 || columns() > 2)) {
       refuse_row(joined("drive unicycle has ", columns(), " columns, expected 1 or 2"));
     }
-    drive_.left = drive_.right = {0.0};
+    drive_.forward = drive_.turn = {0.0};
+    if (robot_.drive == DriveKind::differential) drive_.pair = {{0.0}, {0.0}};
     if (robot_.drive == DriveKind::differential || robot_.drive == DriveKind::unicycle) return;
     kinematics_.emplace(robot_);
     kinematics_->prepare(drive_, 1);
@@ -72,10 +74,12 @@ class RowAtHand {
   /// The row as it is read, what the gyro adds to it.
   GyroShare take(const WheelRow& row) {
     if (!kinematics_) {
-      const WheelTravel shown =
-          columns() > 0 ? unicycle_travel(row) : WheelTravel{row.left, row.right};
-      drive_.left.front() = shown.left;
-      drive_.right.front() = shown.right;
+      if (!drive_.pair.empty()) {
+        drive_.pair.left.front() = row.left;
+        drive_.pair.right.front() = row.right;
+      }
+      set(columns() > 0 ? unicycle_motion(row)
+                        : body_motion({row.left, row.right}, robot_.wheelbase));
       return share_of(row);
     }
     for (std::size_t k = 0; k < row.readings.size(); ++k) {
@@ -101,9 +105,7 @@ class RowAtHand {
 
   /// As wheels and gyro together say.
   ReckonedRow recorded(const WheelRow& row, const GyroShare& gyro) {
-    ReckonedRow result{together(gyro, robot_), row.duration, 0.0, row.compass};
-    result.sideways = gyro.sideways;
-    if (!drive_.sideways.empty()) result.sideways += gyro.aside * gyro.excess;
+    ReckonedRow result{together(gyro), row.duration, 0.0, row.compass};
     result.noise = noise_of(result, gyro);
     return result;
   }
@@ -111,17 +113,16 @@ class RowAtHand {
   /// The row less what is added to it.
   ReckonedRow cleared(const ReckonedRow& row, const GyroShare& gyro, const DrivePattern& more) {
     ReckonedRow clear = row;
-    const WheelTravel turned = wheel_travel({0.0, 0.0, more.turn}, robot_);
-    clear.travel = {row.travel.left + more.advance + turned.left,
-                    row.travel.right + more.advance + turned.right};
+    clear.motion = row.motion + BodyMotion{more.advance, 0.0, more.turn};
     clear.slip = more.slip;
     clear.noise = noise_of(clear, gyro);
     return clear;
   }
 
-  /// As shapes of the rates see it.
-  [[nodiscard]] BodyMotion body(const ReckonedRow& row) const {
-    return body_motion(row.travel, robot_, row.sideways);
+  /// As shapes of the kind of motion see the row that was taken.
+  [[nodiscard]] WheelWay wheels(const GyroShare& gyro) const {
+    return {drive_.pair.empty() ? wheel_travel(gyro.wheels, robot_) : drive_.pair.at(0),
+            gyro.wheels.sideways};
   }
 
   /// As channels see it.
@@ -132,8 +133,7 @@ class RowAtHand {
   }
 
   [[nodiscard]] Motion motion(const ReckonedRow& row) const {
-    return {displacement_of(body_motion(row.travel, robot_, row.slip + row.sideways)),
-            covariance_of(row, robot_, noise_)};
+    return {displacement_of(row.whole()), covariance_of(row, robot_, noise_)};
   }
 
   [[nodiscard]] const Robot& robot() const { return robot_; }
@@ -145,12 +145,18 @@ class RowAtHand {
     return robot_.drive == DriveKind::differential ? 0 : robot_.columns.size();
   }
 
-  [[nodiscard]] WheelTravel unicycle_travel(const WheelRow& row) const {
+  [[nodiscard]] BodyMotion unicycle_motion(const WheelRow& row) const {
     const double turn = turns_by_gyro(robot_) ? row.yaw_rate * row.duration : row.readings[1];
-    return wheel_travel({row.readings[0], 0.0, turn}, robot_);
+    return {row.readings[0], 0.0, turn};
   }
 
-  [[nodiscard]] GyroShare share_of(const WheelRow& row) const {
+  void set(const BodyMotion& motion) {
+    drive_.forward.front() = motion.forward;
+    drive_.turn.front() = motion.turn;
+  }
+
+  [[nodiscard]] GyroShare share_of(const WheelRow& row) {
+    drive_.gyro.clear();
     const double beside = turns_by_gyro(robot_) ? kAbsent : row.yaw_rate;
     return gyro_share(drive_, 0, beside, row.duration, robot_, noise_);
   }
@@ -158,8 +164,7 @@ class RowAtHand {
   /// Nothing of two wheels without a gyro: then that of the wheels.
   [[nodiscard]] std::optional<ArcNoise> noise_of(const ReckonedRow& row, const GyroShare& gyro) {
     if (!gyro_ && !kinematics_) return std::nullopt;
-    drive_.left.front() = row.travel.left;
-    drive_.right.front() = row.travel.right;
+    set(row.motion);
     drive_.gyro.clear();
     if (gyro_) drive_.gyro.push_back(gyro);
     return row_noise(drive_, 0, 1.0, row.duration, robot_, noise_);

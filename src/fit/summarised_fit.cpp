@@ -64,7 +64,7 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
   }
 
   void add(const DrivenRecording& recording) {
-    require_well_formed(recording);
+    require_well_formed(recording, model().robot);
     if (recording.sightings.empty()) {
       throw InputError(recording.name, 0,
                        "sights no landmark, by which sessions are tied, expected some");

@@ -23,7 +23,7 @@ constexpr double kStillOffset = 1e-7;
 /// Coefficients as the model states them: the same reference for every robot.
 ModelFit fit_at_reference(const std::vector<DrivenRecording>& recordings, const Model& model,
                           const FitOptions& options) {
-  require_well_formed(recordings);
+  require_well_formed(recordings, model.robot);
   FitterOptions how = fitter_options(options);
   how.fit_effects = false;
   how.still_offset = kStillOffset;

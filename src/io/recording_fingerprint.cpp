@@ -57,8 +57,9 @@ std::string fingerprint(const DrivenRecording& recording) {
   const MotionRows& drive = recording.drive;
   hash.take(drive.t);
   if (drive.wheels.empty()) {
-    hash.take(drive.left);
-    hash.take(drive.right);
+    const bool two = drive.of_two_wheels();
+    hash.take(two ? drive.pair.left : drive.forward);
+    hash.take(two ? drive.pair.right : drive.turn);
   }
   hash.take(drive.heading);
   for (const WheelColumn& one : drive.wheels) hash.take(one.reading);

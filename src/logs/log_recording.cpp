@@ -207,8 +207,8 @@ void compare_wheels(const LogMap& map, const GatheredLog& gathered,
   PlanarStep b;
   std::int64_t begin = odometry.bounds.front();
   for (std::size_t k = 0; k < odometry.left.size(); ++k) {
-    const BodyMotion by_wheels = body_motion(wheels, before + k, robot);
-    const BodyMotion said = body_motion({odometry.left[k], odometry.right[k]}, robot, 0.0);
+    const BodyMotion by_wheels = wheels.motion(before + k);
+    const BodyMotion said = body_motion({odometry.left[k], odometry.right[k]}, robot.wheelbase);
     a += {by_wheels.forward, 0.0, by_wheels.turn};
     b += {said.forward, 0.0, said.turn};
     if (odometry.bounds[k + 1] - begin < kWindow) continue;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 
+#include "drive/body_motion.hpp"
 #include "logs/bag_builder.hpp"
 #include "logs/recording_bag_map.hpp"
 #include "odometry/row_reckoner.hpp"
@@ -72,11 +73,11 @@ class RecordingBag {
     const std::vector<std::string>& columns = model_.robot.columns;
     if (drive_.wheels.empty()) {
       if (columns.size() == 2) {
-        return {{columns[0], columns[0], &drive_.left, false},
-                {columns[1], columns[1], &drive_.right, false}};
+        return {{columns[0], columns[0], &drive_.pair.left, false},
+                {columns[1], columns[1], &drive_.pair.right, false}};
       }
-      return {{"left", "left_wheel", &drive_.left, false},
-              {"right", "right_wheel", &drive_.right, false}};
+      return {{"left", "left_wheel", &drive_.pair.left, false},
+              {"right", "right_wheel", &drive_.pair.right, false}};
     }
     std::vector<Wheel> found;
     for (const WheelColumn& one : drive_.wheels) {
@@ -119,11 +120,8 @@ class RecordingBag {
       if (k > 0) {
         const std::size_t row = k - 1;
         const double seconds = drive_.duration(row);
-        const double left = drive_.left[row];
-        const double right = drive_.right[row];
-        message.twist = per_second(
-            {0.5 * (left + right), drive_.slip(row), (right - left) / model_.robot.wheelbase},
-            seconds);
+        const BodyMotion motion = drive_.motion(row);
+        message.twist = per_second({motion.forward, motion.sideways, motion.turn}, seconds);
         message.twist_covariance =
             row_covariance(drive_, row, 1.0, seconds, model_.robot, model_.noise) /
             (seconds * seconds);
@@ -263,9 +261,15 @@ Bag format_recording_bag(const Recording& recording, const Model& model,
   if (!(options.wheel_radius > 0.0 && std::isfinite(options.wheel_radius))) {
     throw std::invalid_argument("the wheel radius must be above 0");
   }
-  const DrivenRecording taken = with_wheels(recording, model.robot);
+  DrivenRecording taken = with_wheels(recording, model.robot);
   Model as_written = model;
   if (!taken.drive.unicycle.empty()) {  // the joints are those of two wheels that show the same
+    for (std::size_t row = 0; row < taken.drive.rows(); ++row) {
+      const auto [left, right] = wheel_travel(taken.drive.motion(row), model.robot);
+      taken.drive.pair.left.push_back(left);
+      taken.drive.pair.right.push_back(right);
+    }
+    taken.drive.unicycle.clear();
     as_written.robot.drive = DriveKind::differential;
     as_written.robot.columns.clear();
   }

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "drive/body_motion.hpp"
 #include "drive/legs.hpp"
 #include "fit/row_at_hand.hpp"
 #include "trussmap/monitor.hpp"
@@ -55,8 +54,8 @@ class RowsAsRead {
     if (ends && drive_.has_compass()) row.compass = drive_.heading[row_];
     if (drive_.has_gyro()) row.yaw_rate = drive_.yaw_rate[row_];
     if (drive_.of_two_wheels()) {
-      row.left = share * drive_.wheel_left(row_);
-      row.right = share * drive_.wheel_right(row_);
+      row.left = share * drive_.pair.left[row_];
+      row.right = share * drive_.pair.right[row_];
     } else if (!drive_.unicycle.empty()) {
       take_unicycle_part(share, row);
     }
@@ -68,8 +67,7 @@ class RowsAsRead {
   }
 
   void take_unicycle_part(double share, WheelRow& row) const {
-    const BodyMotion body =
-        body_motion({drive_.wheel_left(row_), drive_.wheel_right(row_)}, robot_);
+    const BodyMotion body = drive_.wheel_motion(row_);
     row.readings.push_back(share * body.forward);
     if (turns_by_gyro(robot_)) {
       row.yaw_rate = body.turn / drive_.duration(row_);

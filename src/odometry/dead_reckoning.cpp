@@ -26,7 +26,7 @@ std::optional<ArcNoise> noise_of_row(const MotionRows& drive, const DriveRow& ro
 ArcNoise arc_noise(const WheelTravel& travel, double duration, const Robot& robot,
                    const Noise& noise) {
   ArcNoise sources = wheel_arc_noise(travel, robot.wheelbase, WheelNoise{noise.left, noise.right});
-  const double turn = body_motion(travel, robot).turn;
+  const double turn = body_motion(travel, robot.wheelbase).turn;
   sources.along += noise.travel_per_s * noise.travel_per_s * duration;
   sources.heading += noise.heading_per_s * noise.heading_per_s * duration +
                      noise.heading_per_rad * noise.heading_per_rad * std::abs(turn);
@@ -35,7 +35,7 @@ ArcNoise arc_noise(const WheelTravel& travel, double duration, const Robot& robo
 
 Matrix3 arc_covariance(const WheelTravel& travel, double duration, const Robot& robot,
                        const Noise& noise) {
-  const BodyMotion motion = body_motion(travel, robot);
+  const BodyMotion motion = body_motion(travel, robot.wheelbase);
   return arc_covariance(motion.forward, motion.turn, arc_noise(travel, duration, robot, noise));
 }
 
@@ -56,7 +56,7 @@ InitialHeading initial_heading(const MotionRows& drive, double t, const Robot& r
   double variance = 0.0;
   for (const DriveRow& row : rows_between(drive, t, drive.t.back())) {
     if (!drive.has_compass()) break;
-    turn += body_motion(travel_of(drive, row), robot).turn;
+    turn += motion_of(drive, row).turn;
     variance += row_covariance(drive, row.row, row.part, row.duration, robot, noise)(2, 2);
     const double reading = drive.heading[row.row];
     if (!std::isnan(reading)) {
@@ -95,24 +95,25 @@ PoseEstimate dead_reckon(const PoseEstimate& start, const MotionRows& drive, dou
     RowReckoner reckoner(start, drive.has_compass());
     for (const DriveRow& row : rows) {
       const bool reads = drive.has_compass() && row.ends && drive.t[row.row] > readings_used_until;
-      reckoner.take({travel_of(drive, row), row.duration, slip_in(row),
-                     reads ? drive.heading[row.row] : kAbsent,
-                     noise_of_row(drive, row, robot, noise), row.part * drive.slip(row.row)},
-                    robot, noise);
+      reckoner.take(
+          {motion_of(drive, row), row.duration, slip_in(row),
+           reads ? drive.heading[row.row] : kAbsent, noise_of_row(drive, row, robot, noise)},
+          robot, noise);
     }
     return reckoner.at();
   }
   PoseEstimate estimate = start;
-  for (const DriveArc& arc : merge_rows(drive, rows, robot.wheelbase, {noise.left, noise.right})) {
-    const Motion end = then({estimate.pose, estimate.covariance},
-                            {arc_displacement(arc.travel, robot.wheelbase),
-                             arc_covariance(arc.travel, arc.duration, robot, noise)});
+  for (const DriveArc& arc : merge_rows(drive, rows, robot, {noise.left, noise.right})) {
+    const Motion end =
+        then({estimate.pose, estimate.covariance},
+             {displacement_of(arc.motion),
+              arc_covariance(wheel_travel(arc.motion, robot), arc.duration, robot, noise)});
     estimate = {end.displacement, end.covariance};
   }
   estimate.pose = start.pose;
   for (const DriveRow& row : rows) {
-    estimate.pose = compose(
-        estimate.pose, displacement_of(body_motion(travel_of(drive, row), robot, slip_in(row))));
+    const BodyMotion slipped{0.0, slip_in(row), 0.0};
+    estimate.pose = compose(estimate.pose, displacement_of(motion_of(drive, row) + slipped));
   }
   return estimate;
 }
@@ -132,12 +133,9 @@ std::vector<PoseEstimate> dead_reckoned_estimates(const MotionRows& drive, const
   result.reserve(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const bool reads = drive.has_compass() && drive.t[row] > first.reading_time;
-    reckoner.take({{drive.left[row], drive.right[row]},
-                   drive.duration(row),
-                   slip.empty() ? 0.0 : slip[row],
+    reckoner.take({drive.motion(row), drive.duration(row), slip.empty() ? 0.0 : slip[row],
                    reads ? drive.heading[row] : kAbsent,
-                   noise_of_row(drive, {row, 1.0, drive.duration(row)}, robot, noise),
-                   drive.slip(row)},
+                   noise_of_row(drive, {row, 1.0, drive.duration(row)}, robot, noise)},
                   robot, noise);
     result.push_back(reckoner.at());
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "odometry/merge.hpp"
 
+#include "drive/body_motion.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,33 +17,41 @@ constexpr double kStanding = 1e-6;      // m per row
 
 enum class Kind { standing, forward, backward, spin_left, spin_right };
 
-Kind kind_of(const WheelTravel& travel) {
-  if (std::abs(travel.left) + std::abs(travel.right) < kStanding) return Kind::standing;
-  if (travel.left * travel.right < 0.0) {
-    return travel.right > 0.0 ? Kind::spin_left : Kind::spin_right;
-  }
-  return travel.left + travel.right > 0.0 ? Kind::forward : Kind::backward;
+/// m that each of two wheels goes for the turn alone, to the left.
+double turned_way(const BodyMotion& motion, const Robot& robot) {
+  return wheel_travel({0.0, 0.0, motion.turn}, robot).right;
 }
 
-double curvature_of(const WheelTravel& travel) {
-  const double sum = std::abs(travel.left) + std::abs(travel.right);
-  return sum > 0.0 ? (travel.right - travel.left) / sum : 0.0;
+Kind kind_of(const BodyMotion& motion, const Robot& robot) {
+  constexpr double kRounding = 1e-12;  // where one wheel stands it is no spin
+  if (2.0 * mean_travel(motion, robot) < kStanding) return Kind::standing;
+  if (std::abs(turned_way(motion, robot)) > (1.0 + kRounding) * std::abs(motion.forward)) {
+    return motion.turn > 0.0 ? Kind::spin_left : Kind::spin_right;
+  }
+  return motion.forward > 0.0 ? Kind::forward : Kind::backward;
+}
+
+double curvature_of(const BodyMotion& motion, const Robot& robot) {
+  const double way = mean_travel(motion, robot);
+  return way > 0.0 ? turned_way(motion, robot) / way : 0.0;
 }
 
 /// Standard deviation of q that wheel noise gives.
-double curvature_noise(const WheelTravel& travel, const WheelNoise& noise) {
-  const double sum = std::abs(travel.left) + std::abs(travel.right);
+double curvature_noise(const BodyMotion& motion, const Robot& robot, const WheelNoise& noise) {
+  const WheelTravel travel = wheel_travel(motion, robot);
   return std::sqrt(noise.left * noise.left * std::abs(travel.left) +
                    noise.right * noise.right * std::abs(travel.right)) /
-         sum;
+         (2.0 * mean_travel(motion, robot));
 }
 
-bool same_arc(const DriveArc& arc, const WheelTravel& row, const WheelNoise& noise) {
-  const Kind kind = kind_of(row);
-  if (kind_of(arc.travel) != kind) return false;
+bool same_arc(const DriveArc& arc, const BodyMotion& row, const Robot& robot,
+              const WheelNoise& noise) {
+  const Kind kind = kind_of(row, robot);
+  if (kind_of(arc.motion, robot) != kind) return false;
   if (kind == Kind::standing) return true;
-  const double tolerance = std::max(kSameCurvature, kNoiseLimit * curvature_noise(row, noise));
-  return std::abs(curvature_of(arc.travel) - curvature_of(row)) <= tolerance;
+  const double tolerance =
+      std::max(kSameCurvature, kNoiseLimit * curvature_noise(row, robot, noise));
+  return std::abs(curvature_of(arc.motion, robot) - curvature_of(row, robot)) <= tolerance;
 }
 
 }  // namespace
@@ -59,42 +69,40 @@ std::vector<DriveRow> rows_between(const MotionRows& drive, double from, double 
   return rows;
 }
 
-WheelTravel travel_of(const MotionRows& drive, const DriveRow& row) {
-  return {row.part * drive.left[row.row], row.part * drive.right[row.row]};
+BodyMotion motion_of(const MotionRows& drive, const DriveRow& row) {
+  return row.part * drive.motion(row.row);
 }
 
-GrowingArc GrowingArc::with(const WheelTravel& travel, double duration, double wheelbase) const {
+GrowingArc GrowingArc::with(const BodyMotion& row, double duration, const Robot& robot) const {
   GrowingArc longer = *this;
-  longer.arc_.travel.left += travel.left;
-  longer.arc_.travel.right += travel.right;
+  longer.arc_.motion = arc_.motion + BodyMotion{row.forward, 0.0, row.turn};
   longer.arc_.duration += duration;
   ++longer.arc_.rows;
-  longer.rows_ = compose(rows_, arc_displacement(travel, wheelbase));
-  longer.path_ += 0.5 * (std::abs(travel.left) + std::abs(travel.right));
+  longer.rows_ = compose(rows_, arc_displacement(row.forward, row.turn));
+  longer.path_ += mean_travel(row, robot);
   return longer;
 }
 
 /// Many gentle bends add up: each row may be like the arc, and the whole not.
-bool GrowingArc::keeps_shape(double wheelbase) const {
-  const Pose end = arc_displacement(arc_.travel, wheelbase);
+bool GrowingArc::keeps_shape() const {
+  const Pose end = arc_displacement(arc_.motion.forward, arc_.motion.turn);
   return (end.position() - rows_.position()).norm() <= kSameShape * path_;
 }
 
-bool GrowingArc::take(const WheelTravel& travel, double duration, double wheelbase,
+bool GrowingArc::take(const BodyMotion& row, double duration, const Robot& robot,
                       const WheelNoise& noise) {
-  const GrowingArc longer = with(travel, duration, wheelbase);
-  const bool joins =
-      arc_.rows > 0 && same_arc(arc_, travel, noise) && longer.keeps_shape(wheelbase);
-  *this = joins ? longer : GrowingArc{}.with(travel, duration, wheelbase);
+  const GrowingArc longer = with(row, duration, robot);
+  const bool joins = arc_.rows > 0 && same_arc(arc_, row, robot, noise) && longer.keeps_shape();
+  *this = joins ? longer : GrowingArc{}.with(row, duration, robot);
   return !joins;
 }
 
 std::vector<DriveArc> merge_rows(const MotionRows& drive, const std::vector<DriveRow>& rows,
-                                 double wheelbase, const WheelNoise& noise) {
+                                 const Robot& robot, const WheelNoise& noise) {
   std::vector<DriveArc> arcs;
   GrowingArc last;
   for (const DriveRow& row : rows) {
-    if (last.take(travel_of(drive, row), row.duration, wheelbase, noise)) arcs.emplace_back();
+    if (last.take(motion_of(drive, row), row.duration, robot, noise)) arcs.emplace_back();
     arcs.back() = last.arc();
   }
   return arcs;

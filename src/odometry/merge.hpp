@@ -4,8 +4,9 @@
 // Rows of a drive merged into arcs of constant curvature, so that covariance costs one closed form
 // per arc, not one per row.
 //
-//   q   (R - L)/(|R| + |L|) of a row's wheel travels, in [-1, 1]: its curvature, times B/2 while
-//       both wheels turn the same way; +-1 where one stands, and for any turn on the spot
+//   q   (R - L)/(|R| + |L|) of the travels that two wheels at the wheelbase B show, in [-1, 1]: the
+//       row's curvature, times B/2 while both turn the same way; +-1 where one stands, and for any
+//       turn on the spot
 //
 // A row joins the arc before it while it is the same kind of motion (forward, backward, turning on
 // the spot left or right, standing) and its q lies within 0.1 of the arc's, or within what wheel
@@ -22,7 +23,7 @@
 namespace trussmap {
 
 struct DriveArc {
-  WheelTravel travel;     ///< m, sums over the rows
+  BodyMotion motion;      ///< sums over the rows, nothing to the side
   double duration = 0.0;  ///< s
   std::size_t rows = 0;   ///< how many
 };
@@ -39,18 +40,19 @@ struct DriveRow {
 /// drive are cut to it.
 [[nodiscard]] std::vector<DriveRow> rows_between(const MotionRows& drive, double from, double to);
 
-[[nodiscard]] WheelTravel travel_of(const MotionRows& drive, const DriveRow& row);
+/// Of the row, or its part.
+[[nodiscard]] BodyMotion motion_of(const MotionRows& drive, const DriveRow& row);
 
 /// An arc as rows join it, one after the other.
 class GrowingArc {
  public:
   /// Takes the next row in; true where it begins a new arc.
-  bool take(const WheelTravel& travel, double duration, double wheelbase, const WheelNoise& noise);
+  bool take(const BodyMotion& row, double duration, const Robot& robot, const WheelNoise& noise);
   [[nodiscard]] const DriveArc& arc() const { return arc_; }
 
  private:
-  [[nodiscard]] GrowingArc with(const WheelTravel& travel, double duration, double wheelbase) const;
-  [[nodiscard]] bool keeps_shape(double wheelbase) const;
+  [[nodiscard]] GrowingArc with(const BodyMotion& row, double duration, const Robot& robot) const;
+  [[nodiscard]] bool keeps_shape() const;
 
   DriveArc arc_;
   Pose rows_;          ///< the rows' own displacement
@@ -59,7 +61,7 @@ class GrowingArc {
 
 /// The arcs of these rows, in order.
 [[nodiscard]] std::vector<DriveArc> merge_rows(const MotionRows& drive,
-                                               const std::vector<DriveRow>& rows, double wheelbase,
-                                               const WheelNoise& noise);
+                                               const std::vector<DriveRow>& rows,
+                                               const Robot& robot, const WheelNoise& noise);
 
 }  // namespace trussmap

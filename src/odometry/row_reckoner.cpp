@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "odometry/row_reckoner.hpp"
 
+#include "drive/body_motion.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 
 #include <algorithm>
@@ -29,9 +30,10 @@ void correct_heading(PoseEstimate& estimate, double reading, double variance) {
 }  // namespace
 
 Matrix3 covariance_of(const ReckonedRow& row, const Robot& robot, const Noise& noise) {
-  if (!row.noise) return arc_covariance(row.travel, row.duration, robot, noise);
-  const BodyMotion motion = body_motion(row.travel, robot);
-  return slanting_covariance(Vector2(motion.forward, row.sideways), motion.turn, *row.noise);
+  return slanting_covariance(
+      Vector2(row.motion.forward, row.motion.sideways), row.motion.turn,
+      row.noise ? *row.noise
+                : arc_noise(wheel_travel(row.motion, robot), row.duration, robot, noise));
 }
 
 Pose displacement_of(const BodyMotion& motion) {
@@ -41,11 +43,7 @@ Pose displacement_of(const BodyMotion& motion) {
 
 Matrix3 row_covariance(const MotionRows& drive, std::size_t row, double part, double duration,
                        const Robot& robot, const Noise& noise) {
-  const WheelTravel travel{part * drive.left[row], part * drive.right[row]};
-  if (drive.gyro.empty() && drive.wheels.empty()) {
-    return arc_covariance(travel, duration, robot, noise);
-  }
-  const BodyMotion motion = body_motion(travel, robot, part * drive.slip(row));
+  const BodyMotion motion = part * drive.motion(row);
   return slanting_covariance(Vector2(motion.forward, motion.sideways), motion.turn,
                              row_noise(drive, row, part, duration, robot, noise));
 }
@@ -76,23 +74,20 @@ double white_equivalent(const Noise& noise, double duration, double way) {
 }
 
 void RowReckoner::take(const ReckonedRow& row, const Robot& robot, const Noise& noise) {
-  const Pose displacement =
-      displacement_of(body_motion(row.travel, robot, row.slip + row.sideways));
+  const Pose displacement = displacement_of(row.whole());
   if (compass_ || row.noise) {
     at_ = moved(at_, displacement, covariance_of(row, robot, noise));
     if (!std::isnan(row.reading)) {
-      const double way = 0.5 * std::abs(row.travel.left + row.travel.right);
+      const double way = std::abs(row.motion.forward);
       correct_heading(at_, row.reading, white_equivalent(noise, row.duration, way));
     }
     return;
   }
-  if (arc_.take(row.travel, row.duration, robot.wheelbase, {noise.left, noise.right})) {
-    anchor_ = at_;
-  }
+  if (arc_.take(row.motion, row.duration, robot, {noise.left, noise.right})) anchor_ = at_;
   const DriveArc& arc = arc_.arc();
   const Pose exact = compose(at_.pose, displacement);
-  at_ = moved(anchor_, arc_displacement(arc.travel, robot.wheelbase),
-              arc_covariance(arc.travel, arc.duration, robot, noise));
+  at_ = moved(anchor_, displacement_of(arc.motion),
+              arc_covariance(wheel_travel(arc.motion, robot), arc.duration, robot, noise));
   at_.pose = exact;
 }
 

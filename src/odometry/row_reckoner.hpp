@@ -9,7 +9,6 @@
 //   with a gyro, or with other wheels than two   row by row
 #pragma once
 
-#include "drive/body_motion.hpp"
 #include "odometry/merge.hpp"
 #include "trussmap/arc.hpp"
 #include "trussmap/dead_reckoning.hpp"
@@ -33,13 +32,15 @@ namespace trussmap {
 [[nodiscard]] double white_equivalent(const Noise& noise, double duration, double way);
 
 struct ReckonedRow {
-  WheelTravel travel;
+  BodyMotion motion;
   double duration = 0.0;     ///< s
-  double slip = 0.0;         ///< m to the left
+  double slip = 0.0;         ///< m to the left, beside what the wheels show
   double reading = kAbsent;  ///< rad, compass at the row's end; NaN: none
   /// Where a gyro was taken in, or of other wheels than two: the row's noise. Absent: the wheels'.
   std::optional<ArcNoise> noise = std::nullopt;
-  double sideways = 0.0;  ///< m to the left, that the wheels show
+
+  /// With the slip.
+  [[nodiscard]] BodyMotion whole() const { return motion + BodyMotion{0.0, slip, 0.0}; }
 };
 
 /// Of the row's motion, in the frame of its start.

@@ -16,16 +16,10 @@ double gyro_variance(const Noise& noise, double duration) {
   return noise.gyro * noise.gyro * duration;
 }
 
-/// As both say: of the wheels alone, rows that err towards a larger turn would count less than
-/// those that err the other way, and all turns seem larger than the wheels say.
-WheelTravel wheels_of(const MotionRows& drive, std::size_t row, double part) {
-  return {part * drive.left[row], part * drive.right[row]};
-}
-
 /// Each wheel's noise, and that of the steering, as it moves the body; with what the model knows
 /// besides.
 ArcNoise columns_noise(const MotionRows& drive, std::size_t row, double part, double duration,
-                       const Robot& robot, const Noise& noise) {
+                       const Noise& noise) {
   const double k2 = 0.5 * (noise.left * noise.left + noise.right * noise.right);
   Matrix3 Q = Matrix3::Zero();
   for (const WheelColumn& column : drive.wheels) {
@@ -38,8 +32,7 @@ ArcNoise columns_noise(const MotionRows& drive, std::size_t row, double part, do
     Q += part * variance * by * by.transpose();
   }
   const double travel = noise.travel_per_s * noise.travel_per_s * duration;
-  const double apart = part * (drive.right[row] - drive.left[row]);
-  const double turn = std::abs(body_motion({0.0, apart}, robot).turn);
+  const double turn = std::abs(part * drive.turn[row]);
   const double heading = noise.heading_per_s * noise.heading_per_s * duration +
                          noise.heading_per_rad * noise.heading_per_rad * turn;
   return {Q(0, 0) + travel, Q(2, 2) + heading,
@@ -50,28 +43,22 @@ ArcNoise columns_noise(const MotionRows& drive, std::size_t row, double part, do
 /// Of the wheels, without the gyro.
 ArcNoise wheels_noise(const MotionRows& drive, std::size_t row, double part, double duration,
                       const Robot& robot, const Noise& noise) {
-  return drive.wheels.empty() ? arc_noise(wheels_of(drive, row, part), duration, robot, noise)
-                              : columns_noise(drive, row, part, duration, robot, noise);
+  if (!drive.wheels.empty()) return columns_noise(drive, row, part, duration, noise);
+  return arc_noise(part * noisy_travel(drive, row, robot), duration, robot, noise);
 }
 
 }  // namespace
 
-GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration,
-                     const Robot& robot, const Noise& noise) {
-  return gyro_share(wheels, yaw_rate, duration, robot, noise,
-                    arc_noise(wheels, duration, robot, noise));
-}
-
-GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration,
-                     const Robot& robot, const Noise& noise, const ArcNoise& of_wheels) {
-  GyroShare share{wheels.left, wheels.right};
+GyroShare gyro_share(const BodyMotion& wheels, double yaw_rate, double duration, const Noise& noise,
+                     const ArcNoise& of_wheels) {
+  GyroShare share{wheels};
   if (std::isnan(yaw_rate)) {
     share.variance = std::numeric_limits<double>::infinity();
     return share;
   }
-  share.excess = yaw_rate * duration - body_motion(wheels, robot).turn;
+  share.excess = yaw_rate * duration - wheels.turn;
   share.variance = gyro_variance(noise, duration);
-  if (share.left == 0.0 && share.right == 0.0) return share;
+  if (wheels.forward == 0.0 && wheels.turn == 0.0) return share;
   const double total = of_wheels.heading + share.variance;
   if (!(total > 0.0)) return share;
   share.along = of_wheels.shared / total;
@@ -82,16 +69,12 @@ GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration
 
 GyroShare gyro_share(const MotionRows& drive, std::size_t row, double yaw_rate, double duration,
                      const Robot& robot, const Noise& noise) {
-  GyroShare share = gyro_share(wheels_of(drive, row, 1.0), yaw_rate, duration, robot, noise,
-                               wheels_noise(drive, row, 1.0, duration, robot, noise));
-  share.sideways = drive.slip(row);
-  return share;
+  return gyro_share(drive.motion(row), yaw_rate, duration, noise,
+                    wheels_noise(drive, row, 1.0, duration, robot, noise));
 }
 
-WheelTravel together(const GyroShare& share, const Robot& robot) {
-  const double along = share.along * share.excess;
-  const double apart = wheel_travel({0.0, 0.0, share.turn}, robot).right * share.excess;
-  return {share.left + along - apart, share.right + along + apart};
+BodyMotion together(const GyroShare& share) {
+  return share.wheels + share.excess * BodyMotion{share.along, share.aside, share.turn};
 }
 
 ArcNoise noise_together(const GyroShare& share, const ArcNoise& wheels, double duration,
@@ -116,13 +99,12 @@ MotionRows with_gyro(const MotionRows& drive, const Robot& robot, const Noise& n
   if (!drive.has_gyro() || !drive.gyro.empty()) return result;
   result.gyro.reserve(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const GyroShare share =
-        gyro_share(drive, row, drive.yaw_rate[row], drive.duration(row), robot, noise);
-    const WheelTravel both = together(share, robot);
-    result.left[row] = both.left;
-    result.right[row] = both.right;
-    if (!drive.sideways.empty()) result.sideways[row] += share.aside * share.excess;
-    result.gyro.push_back(share);
+    result.gyro.push_back(
+        gyro_share(drive, row, drive.yaw_rate[row], drive.duration(row), robot, noise));
+    const BodyMotion both = together(result.gyro.back());
+    result.forward[row] = both.forward;
+    result.turn[row] = both.turn;
+    if (!drive.sideways.empty()) result.sideways[row] = both.sideways;
   }
   return result;
 }
@@ -152,8 +134,8 @@ double excess_variance(const MotionRows& drive, std::size_t row, double part, do
   if (drive.gyro.empty() || !std::isfinite(drive.gyro[row].variance)) {
     return std::numeric_limits<double>::infinity();
   }
-  const WheelTravel wheels = wheels_of(drive, row, part);
-  const bool rests = wheels.left == 0.0 && wheels.right == 0.0 && drive.slip(row) == 0.0;
+  const BodyMotion both = part * drive.motion(row);
+  const bool rests = both.forward == 0.0 && both.turn == 0.0 && both.sideways == 0.0;
   const double of_wheels =
       rests ? 0.0 : wheels_noise(drive, row, part, duration, robot, noise).heading;
   return of_wheels + gyro_variance(noise, duration);

@@ -26,24 +26,20 @@
 
 namespace trussmap {
 
-/// Of one row, from its wheels' travels and the gyro's reading (rad/s, NaN: none).
-[[nodiscard]] GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration,
-                                   const Robot& robot, const Noise& noise);
-/// The same of wheels whose noise is known.
-[[nodiscard]] GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration,
-                                   const Robot& robot, const Noise& noise,
-                                   const ArcNoise& of_wheels);
+/// Of one row, from its wheels' motion, its noise, and the gyro's reading (rad/s, NaN: none).
+[[nodiscard]] GyroShare gyro_share(const BodyMotion& wheels, double yaw_rate, double duration,
+                                   const Noise& noise, const ArcNoise& of_wheels);
 /// The same of a drive's row, of two wheels or others, that lasts `duration` s and has this yaw
 /// rate.
 [[nodiscard]] GyroShare gyro_share(const MotionRows& drive, std::size_t row, double yaw_rate,
                                    double duration, const Robot& robot, const Noise& noise);
-/// s', as wheel travels that lead along it.
-[[nodiscard]] WheelTravel together(const GyroShare& share, const Robot& robot);
+/// s'.
+[[nodiscard]] BodyMotion together(const GyroShare& share);
 /// Q' of a row, or of a part that lasts `duration` s, in which the wheels' noise is `wheels`.
 [[nodiscard]] ArcNoise noise_together(const GyroShare& share, const ArcNoise& wheels,
                                       double duration, const Noise& noise);
 
-/// The drive with its gyro taken in, so that `left` and `right` lead along s'. Unchanged where
+/// The drive with its gyro taken in: its motion is s'. Unchanged where
 /// there is no gyro, or where it has been taken in before.
 [[nodiscard]] MotionRows with_gyro(const MotionRows& drive, const Robot& robot, const Noise& noise);
 [[nodiscard]] std::vector<DrivenRecording> with_gyro(const std::vector<DrivenRecording>& recordings,

@@ -126,7 +126,7 @@ std::vector<Chart> time_strips(const std::vector<DrivenRecording>& recordings,
   std::vector<Chart> strips;
   if (recordings.empty()) return strips;
   const auto speed = [](const MotionRows& drive, std::size_t row) {
-    return 0.5 * (drive.left[row] + drive.right[row]) / drive.duration(row);
+    return drive.forward[row] / drive.duration(row);
   };
   strips.push_back(chart_of(
       "strip-speed", "speed [m/s]",

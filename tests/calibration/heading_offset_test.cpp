@@ -55,7 +55,7 @@ std::string refusal(const Recording& recording) {
 
 TEST(HeadingOffset, IsTheAngleThatTheTruthIsTurnedBy) {
   for (const double angle : {-2.0, -0.5, 0.0, 0.3, 1.6, 3.0}) {
-    const HeadingOffset found = heading_offset({testing::driven(turned(angle))}, Robot());
+    const HeadingOffset found = heading_offset({testing::driven(turned(angle))});
     // Pairs of rows 0.2 m apart, each off by 0.002 m x sqrt(2) / 0.2 m; 150 of them.
     EXPECT_NEAR(found.angle, angle, 4.0 * 0.015 / std::sqrt(150.0)) << angle;
     EXPECT_GT(found.agreement, 0.99);
@@ -65,12 +65,12 @@ TEST(HeadingOffset, IsTheAngleThatTheTruthIsTurnedBy) {
 
 TEST(HeadingOffset, DrivingBackwardsIsNoTurn) {
   const Recording reverse = draw({{1.0, 0.0, 0.0}, {8.0, -0.5, 0.2}, {1.0, 0.0, 0.0}}, usual());
-  EXPECT_NEAR(heading_offset({testing::driven(reverse)}, Robot()).angle, 0.0, 0.02);
-  EXPECT_EQ(describe(heading_offset({testing::driven(reverse)}, Robot())), "");
+  EXPECT_NEAR(heading_offset({testing::driven(reverse)}).angle, 0.0, 0.02);
+  EXPECT_EQ(describe(heading_offset({testing::driven(reverse)})), "");
 }
 
 TEST(HeadingOffset, ClockwiseHeadingsAreKnown) {
-  const HeadingOffset found = heading_offset({testing::driven(clockwise())}, Robot());
+  const HeadingOffset found = heading_offset({testing::driven(clockwise())});
   EXPECT_TRUE(found.clockwise);
   EXPECT_GT(found.agreement, 0.99);
   EXPECT_NEAR(found.angle, 0.0, 0.02);
@@ -78,7 +78,7 @@ TEST(HeadingOffset, ClockwiseHeadingsAreKnown) {
 
 TEST(HeadingOffset, ARobotThatGoesNowhereTellsNothing) {
   const Recording spin = draw({{1.0, 0.0, 0.0}, {10.0, 0.0, 0.5}}, usual());
-  EXPECT_EQ(heading_offset({testing::driven(spin)}, Robot()).agreement, 0.0);
+  EXPECT_EQ(heading_offset({testing::driven(spin)}).agreement, 0.0);
 }
 
 TEST(WheelCalibration, ATruthThatIsTurnedRoundIsRefusedAndNamed) {

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <random>
 #include <set>
 #include <string>
 #include <vector>
@@ -332,6 +333,55 @@ std::string name_of_test(const ::testing::TestParamInfo<DriveKind>& one) {
 INSTANTIATE_TEST_SUITE_P(Check, EveryMistakeWithADrive, ::testing::ValuesIn(kDrives), name_of_test);
 INSTANTIATE_TEST_SUITE_P(Check, SlowEveryMistakeWithADrive, ::testing::ValuesIn(kDrives),
                          name_of_test);
+
+/// 40 s of a unicycle that says how far it goes and turns, beside a compass that tells neither.
+Recording unicycle_drive() {
+  Recording recording;
+  recording.name = "unicycle";
+  Covariate travel{"travel", {}};
+  Covariate turn{"turn", {}};
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> any(-std::numbers::pi, std::numbers::pi);
+  for (int row = 1; row <= 400; ++row) {
+    recording.drive.t.push_back(0.1 * row);
+    recording.drive.heading.push_back(any(random));
+    travel.values.push_back(0.05 + 0.01 * std::sin(0.1 * row));
+    turn.values.push_back(0.06 * std::sin(0.02 * row));
+  }
+  recording.drive.covariates = {travel, turn};
+  return recording;
+}
+
+Model unicycle_model() {
+  Model model;
+  model.robot.drive = DriveKind::unicycle;
+  model.robot.columns = {"travel", "turn"};
+  return model;
+}
+
+TEST(CheckOfDrives, AUnicycleHasNoWheelThatCouldBeNegated) {
+  const Model model = unicycle_model();
+  for (const CheckFinding& one : check_recordings({unicycle_drive()}, &model, "model.toml")) {
+    EXPECT_EQ(one.column.find("left"), std::string::npos) << in_words(one);
+    EXPECT_EQ(one.column.find("right"), std::string::npos) << in_words(one);
+  }
+}
+
+TEST(CheckOfDrives, AGlitchInAUnicyclesTravelIsNamedAndMended) {
+  const Model model = unicycle_model();
+  const Recording whole = unicycle_drive();
+  Recording recording = whole;
+  recording.drive.covariates[0].values[200] += 5.0;
+  recording.drive.covariates[0].values[201] -= 5.0;
+  const std::vector<CheckFinding> findings = check_recordings({recording}, &model, "model.toml");
+  EXPECT_TRUE(std::any_of(findings.begin(), findings.end(), [](const CheckFinding& one) {
+    return one.kind == "counter glitch" && one.column == "travel";
+  })) << text_of(findings);
+  const Recording back = mended(recording, &model).recording;
+  for (std::size_t row = 0; row < whole.drive.rows(); ++row) {
+    EXPECT_NEAR(back.drive.covariates[0].values[row], whole.drive.covariates[0].values[row], 0.01);
+  }
+}
 
 TEST(CheckOfDrives, KindsAreListed) {
   const std::vector<std::string>& kinds = check_kinds();

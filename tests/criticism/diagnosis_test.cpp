@@ -247,8 +247,8 @@ TEST(HeldOutLegs, MoveAsTheSlopesSay) {
     const HeldOut told = legs.moved(kSize * legs.slopes(effect, score.columns, score.landmarks));
     DrivenRecording changed = one.recording;
     for (std::size_t row = 0; row < changed.drive.rows(); ++row) {
-      double& left = changed.drive.left[row];
-      double& right = changed.drive.right[row];
+      double& left = changed.drive.pair.left[row];
+      double& right = changed.drive.pair.right[row];
       if (channel == Channel::wheels) {
         left *= 1.0 + kSize;
         right *= 1.0 + kSize;
@@ -260,6 +260,7 @@ TEST(HeldOutLegs, MoveAsTheSlopesSay) {
         changed.drive.heading[row] -= kSize;
       }
     }
+    testing::retake(changed.drive, one.model.robot.wheelbase);
     for (Sighting& sighting : changed.sightings) {
       if (std::isnan(sighting.range)) continue;
       if (channel == Channel::bearing) sighting.bearing -= kSize;
@@ -286,14 +287,15 @@ TEST(Diagnosis, UnderNoiseThatItEstimatedNoWarningBlamesTheStated) {
   std::normal_distribution<double> normal;
   MotionRows& drive = world.recording.drive;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    for (std::vector<double>* wheel : {&drive.left, &drive.right}) {
+    for (std::vector<double>* wheel : {&drive.pair.left, &drive.pair.right}) {
       double& travel = (*wheel)[row];
       travel += 0.009 * std::sqrt(std::abs(travel)) * normal(random);
     }
-    const double apart = 0.02 * (drive.right[row] - drive.left[row]);
-    drive.left[row] -= apart;
-    drive.right[row] += apart;
+    const double apart = 0.02 * (drive.pair.right[row] - drive.pair.left[row]);
+    drive.pair.left[row] -= apart;
+    drive.pair.right[row] += apart;
   }
+  testing::retake(drive);
   const ModelFit fit = fit_model({world.recording}, world.model);
   const auto blames = [](const std::string& one) { return one.rfind("chi^2 = ", 0) == 0; };
   ASSERT_TRUE(std::any_of(fit.warnings.begin(), fit.warnings.end(), blames));

@@ -6,6 +6,7 @@
 #include "criticism/event_tests.hpp"
 
 #include "criticism/known_events.hpp"
+#include "driven.hpp"
 #include "estimation/data_snooping.hpp"
 
 #include <algorithm>
@@ -119,8 +120,9 @@ TEST(EventTests, ALandmarkThatMovesDuringASessionIsFound) {
 TEST(EventTests, ASessionWithAnotherScaleIsOutOfLine) {
   NoisyDrive world = simulate_world({true, true, false, 1, 3}, 6);
   MotionRows& drive = world.recordings[1].drive;
-  for (double& left : drive.left) left *= 1.01;
-  for (double& right : drive.right) right *= 1.01;
+  for (double& left : drive.pair.left) left *= 1.01;
+  for (double& right : drive.pair.right) right *= 1.01;
+  testing::retake(drive);
   const std::vector<TestedEvent> found = events_of(world);
   EXPECT_EQ(found.front().kind, EventKind::session);
   EXPECT_EQ(found.front().name, "run 2");
@@ -132,8 +134,9 @@ TEST(EventTests, ASessionsSizesHaveTheirPlaces) {
   for (const bool compass : {true, false}) {
     NoisyDrive world = simulate_world({compass, true, false, 1, 3}, 6);
     MotionRows& drive = world.recordings[1].drive;
-    for (double& left : drive.left) left *= 1.02;
-    for (double& right : drive.right) right *= 1.02;
+    for (double& left : drive.pair.left) left *= 1.02;
+    for (double& right : drive.pair.right) right *= 1.02;
+    testing::retake(drive);
     const std::vector<TestedEvent> found = events_of(world);
     ASSERT_EQ(found.front().kind, EventKind::session);
     ASSERT_EQ(found.front().size.size(), 4U);

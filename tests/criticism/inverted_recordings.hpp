@@ -12,6 +12,7 @@
 // With creep g the body moves by ds (1, g): the course differs from the heading by atan g.
 #pragma once
 
+#include "driven.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
 
@@ -223,8 +224,9 @@ class Inverter {
     heading_ += dtheta;
     MotionRows& drive = result_.recording.drive;
     drive.t.push_back(time_);
-    drive.left.push_back(row.left + noise(0.003 * std::sqrt(std::abs(row.left))));
-    drive.right.push_back(row.right + noise(0.003 * std::sqrt(std::abs(row.right))));
+    const double left = row.left + noise(0.003 * std::sqrt(std::abs(row.left)));
+    const double right = row.right + noise(0.003 * std::sqrt(std::abs(row.right)));
+    add_travels(drive, left, right, kInvertedWheelbase);
     const double reading = heading_ + disturbance_.compass(heading_, row.turn_rate()) + noise(0.02);
     drive.heading.push_back(std::remainder(reading, 2.0 * M_PI));
     drive.covariates[0].values.push_back(payload_);

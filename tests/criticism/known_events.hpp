@@ -48,7 +48,8 @@ inline Bump bumped(const NoisyWorld& how, double sds, std::uint64_t seed) {
   RecordingSystem system(fit.problem, border);
   system.linearise(fit.adjustment.state, Eigen::VectorXd::Zero(1));
   const double told = tests.projected(system.border()).norm();
-  (left ? drive.left : drive.right)[row] += sign * sds / told;
+  (left ? drive.pair.left : drive.pair.right)[row] += sign * sds / told;
+  retake(drive, result.world.model.robot.wheelbase);
   const auto name = [&](std::size_t stop) {
     return landmark_name(result.world.mesh, motion.stops[stop].landmark);
   };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/misfits.hpp"
 
+#include "driven.hpp"
 #include "estimation/simulated_recordings.hpp"
 
 #include <cmath>
@@ -15,8 +16,9 @@ TEST(Misfits, LegsAreAsMuchTooLongAsTheWheelsSay) {
   // A survey holds the map against wheels of little weight: what they say too much remains.
   constexpr double kTooMuch = 0.05;
   testing::SimulatedRecording one = testing::simulate_recording({true, true, false, 2}, 6);
-  for (double& left : one.recording.drive.left) left *= 1.0 + kTooMuch;
-  for (double& right : one.recording.drive.right) right *= 1.0 + kTooMuch;
+  for (double& left : one.recording.drive.pair.left) left *= 1.0 + kTooMuch;
+  for (double& right : one.recording.drive.pair.right) right *= 1.0 + kTooMuch;
+  testing::retake(one.recording.drive);
   one.model.noise.left *= 10.0;
   one.model.noise.right *= 10.0;
   const FitState fit = fit_recordings({one.recording}, one.model);

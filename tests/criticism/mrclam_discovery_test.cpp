@@ -76,8 +76,9 @@ TEST(SlowMrclamDiscovery, FindsDelayAndLossInArcsAndDeadReckoningGetsBetter) {
   const LastingErrors errors =
       lasting_errors(fit_model({read.recording}, read.model, options.diagnosis.fit));
   EXPECT_GE(errors.lasts, 0.5);
-  const Discovery found = discover(thinned_frames({testing::driven(read.recording)}, errors.lasts),
-                                   read.model, options);
+  const Discovery found =
+      discover(thinned_frames({testing::driven(read.recording, read.model.robot)}, errors.lasts),
+               read.model, options);
   EXPECT_TRUE(found.found.settled);
   std::set<std::string> names;
   double delay = 0.0;

@@ -7,6 +7,7 @@
 
 #include "criticism/noise_laws.hpp"
 #include "criticism/noisy_recordings.hpp"
+#include "driven.hpp"
 #include "estimation/kinds/kinds.hpp"
 
 #include <algorithm>
@@ -182,6 +183,9 @@ TEST(NoiseTests, WhatIsSetAsideIsNoNoise) {
   // A wheelbase off by 4 % looks like noisy turns, until its column is set aside.
   NoisyDrive world = simulate_world({}, 3);
   world.model.robot.wheelbase *= 1.04;
+  for (DrivenRecording& one : world.recordings) {
+    testing::retake(one.drive, world.model.robot.wheelbase);
+  }
   const FitState fit = fit_recordings(world.recordings, world.model);
   const ScoreTest tests(fit);
   Effect wheelbase;
@@ -209,9 +213,10 @@ TEST(NoiseTests, CorrelatedDrivesAreRecognised) {
     if (motion.rows[row - 1].activity != Activity::drive) {
       share = 0.9 * share + std::sqrt(1.0 - 0.81) * 0.008 * normal(random);
     }
-    world.recordings.front().drive.left[row] *= 1.0 + share;
-    world.recordings.front().drive.right[row] *= 1.0 + share;
+    world.recordings.front().drive.pair.left[row] *= 1.0 + share;
+    world.recordings.front().drive.pair.right[row] *= 1.0 + share;
   }
+  testing::retake(world.recordings.front().drive);
   EXPECT_LT(find(noise_of(world), "autocorrelation").p_adjusted, 0.01);
 }
 

@@ -56,8 +56,9 @@ inline NoisyDrive simulate_world(const NoisyWorld& world, std::uint64_t seed) {
 /// What a row's wheels have driven too much.
 inline void add_to_row(MotionRows& drive, std::size_t row, double travel, double turn,
                        double wheelbase) {
-  drive.left[row] += travel - 0.5 * wheelbase * turn;
-  drive.right[row] += travel + 0.5 * wheelbase * turn;
+  drive.pair.left[row] += travel - 0.5 * wheelbase * turn;
+  drive.pair.right[row] += travel + 0.5 * wheelbase * turn;
+  retake(drive, wheelbase);
 }
 
 /// Rows in which a drive or a turn on the spot begins.
@@ -91,14 +92,15 @@ inline void add_noise(NoisyDrive& world, const std::string& law, double factor,
       double left = 0.0;
       double right = 0.0;
       if (law == "per metre") {
-        left = (factor * factor - 1.0) * k2 * std::abs(drive.left[row]);
-        right = (factor * factor - 1.0) * k2 * std::abs(drive.right[row]);
+        left = (factor * factor - 1.0) * k2 * std::abs(drive.pair.left[row]);
+        right = (factor * factor - 1.0) * k2 * std::abs(drive.pair.right[row]);
       } else if (law == "per second") {
         left = right = more * legs * one.duration / motion.rows.back().t;
       }
-      drive.left[row] += std::sqrt(left) * normal(random);
-      drive.right[row] += std::sqrt(right) * normal(random);
+      drive.pair.left[row] += std::sqrt(left) * normal(random);
+      drive.pair.right[row] += std::sqrt(right) * normal(random);
     }
+    retake(drive, wheelbase);
     if (law == "per start") {
       for (const std::size_t row : beginnings(motion, Activity::drive)) {
         add_to_row(drive, row, std::sqrt(0.5 * more) * normal(random), 0.0, wheelbase);

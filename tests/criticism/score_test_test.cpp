@@ -8,6 +8,7 @@
 #include "criticism/data_lacks.hpp"
 #include "criticism/noisy_recordings.hpp"
 #include "criticism/trends.hpp"
+#include "driven.hpp"
 #include "estimation/simulated_recordings.hpp"
 
 #include <algorithm>
@@ -33,12 +34,13 @@ Effect effect_of(Channel channel, const std::vector<Shape>& shape) {
 /// What the recording's wheels would have shown with a wheelbase off by as much.
 void widen(DrivenRecording& recording, double wheelbase, double g) {
   for (std::size_t row = 0; row < recording.drive.rows(); ++row) {
-    const double path = 0.5 * (recording.drive.left[row] + recording.drive.right[row]);
+    const double path = 0.5 * (recording.drive.pair.left[row] + recording.drive.pair.right[row]);
     const double turn =
-        (recording.drive.right[row] - recording.drive.left[row]) / wheelbase / (1.0 + g);
-    recording.drive.left[row] = path - 0.5 * wheelbase * turn;
-    recording.drive.right[row] = path + 0.5 * wheelbase * turn;
+        (recording.drive.pair.right[row] - recording.drive.pair.left[row]) / wheelbase / (1.0 + g);
+    recording.drive.pair.left[row] = path - 0.5 * wheelbase * turn;
+    recording.drive.pair.right[row] = path + 0.5 * wheelbase * turn;
   }
+  testing::retake(recording.drive, wheelbase);
 }
 
 TEST(ScoreTest, PromisesWhatARefitTakesOffChi2) {

@@ -3,6 +3,7 @@
 #include "criticism/trends.hpp"
 
 #include "criticism/noisy_recordings.hpp"
+#include "driven.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,8 +26,8 @@ DrivenRecording split(const DrivenRecording& whole, int parts) {
     for (int part = 1; part <= parts; ++part) {
       drive.t.push_back(whole.drive.t[row] -
                         whole.drive.duration(row) * (1.0 - static_cast<double>(part) / parts));
-      drive.left.push_back(whole.drive.left[row] / parts);
-      drive.right.push_back(whole.drive.right[row] / parts);
+      testing::add_travels(drive, whole.drive.pair.left[row] / parts,
+                           whole.drive.pair.right[row] / parts);
       if (whole.drive.has_compass()) {
         drive.heading.push_back(part == parts ? whole.drive.heading[row] : kAbsent);
       }

@@ -69,7 +69,8 @@ TEST(SlowVerdict, OnSimulatedRecordingsNoneContradictsAnother) {
     testing::SimulatedRecording one =
         testing::simulate_recording({true, true, seed % 2 == 0}, seed);
     const double wrong = 0.02 / static_cast<double>(seed * seed);
-    for (double& left : one.recording.drive.left) left *= 1.0 + wrong;
+    for (double& left : one.recording.drive.pair.left) left *= 1.0 + wrong;
+    testing::retake(one.recording.drive);
     const std::vector<DrivenRecording> recordings{one.recording};
     const ModelFit fit = fit_model(recordings, one.model);
     expect_agreement(recordings, fit, std::to_string(seed));

@@ -70,7 +70,7 @@ TEST(SlowLineRobot, WheelsClockAndRangesAreFound) {
   TRUSSMAP_NEEDS_SHARED("data/utias-1d-wheel/dataset1.csv.xz");
   const Dataset read = read_line_robot(testing::shared("data/utias-1d-wheel/dataset1.csv.xz"));
   const std::vector<DrivenRecording> recordings =
-      thinned_frames({testing::driven(read.recording)}, 1.0);
+      thinned_frames({testing::driven(read.recording, read.model.robot)}, 1.0);
   Model model = read.model;
   const ModelFit before = fit_model(recordings, model);
   model.effects = {{"travel", Channel::travel, {"1"}, {}, false},

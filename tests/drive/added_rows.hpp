@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "trussmap/recording.hpp"
+#include "driven.hpp"
 
 namespace trussmap::testing {
 
-/// Rows of 0.1 s, from t = 10 s on, in which two wheels travel so far (m).
-inline void add_rows(MotionRows& drive, int rows, double left, double right) {
+/// Rows of 0.1 s, from t = 10 s on, in which two wheels that are so far apart travel so far (m).
+inline void add_rows(MotionRows& drive, int rows, double left, double right, double wheelbase) {
   for (int k = 0; k < rows; ++k) {
     drive.t.push_back(10.0 + 0.1 * static_cast<double>(drive.rows() + 1));
-    drive.left.push_back(left);
-    drive.right.push_back(right);
+    add_travels(drive, left, right, wheelbase);
   }
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "drive/body_motion.hpp"
 
-#include "drive/row_motion.hpp"
+#include "driven.hpp"
 
 #include <random>
 
@@ -23,7 +23,7 @@ TEST(BodyMotion, AWheelTravelsAsItsPlaceOnTheBody) {
     const WheelTravel wheels = wheel_travel(motion, kRobot);
     EXPECT_NEAR(wheels.left, motion.forward - 0.2 * motion.turn, 1e-15);
     EXPECT_NEAR(wheels.right, motion.forward + 0.2 * motion.turn, 1e-15);
-    const BodyMotion again = body_motion(wheels, kRobot);
+    const BodyMotion again = body_motion(wheels, kRobot.wheelbase);
     EXPECT_NEAR(again.forward, motion.forward, 1e-15);
     EXPECT_NEAR(again.turn, motion.turn, 1e-14);
   }
@@ -32,26 +32,50 @@ TEST(BodyMotion, AWheelTravelsAsItsPlaceOnTheBody) {
 TEST(BodyMotion, IsAddedToTheSideOnlyWhereADriveGoesThere) {
   MotionRows drive;
   drive.t = {0.1, 0.2};
-  drive.left = drive.right = {0.1, 0.1};
+  drive.forward = {0.1, 0.1};
+  drive.turn = {0.0, 0.2};
   add_motion(drive, 1, {0.02, 0.03, 0.5}, kRobot);
-  EXPECT_EQ(drive.left[0], 0.1);
-  EXPECT_NEAR(drive.left[1], 0.02, 1e-15);
-  EXPECT_NEAR(drive.right[1], 0.22, 1e-15);
+  EXPECT_EQ(drive.forward[0], 0.1);
+  EXPECT_NEAR(drive.forward[1], 0.12, 1e-15);
+  EXPECT_NEAR(drive.turn[1], 0.7, 1e-15);
   EXPECT_TRUE(drive.sideways.empty());
+  EXPECT_TRUE(drive.pair.empty());
   drive.sideways = {0.0, 0.01};
   add_motion(drive, 1, {0.0, 0.03, 0.0}, kRobot);
-  EXPECT_NEAR(body_motion(drive, 1, kRobot).sideways, 0.04, 1e-15);
+  EXPECT_NEAR(drive.motion(1).sideways, 0.04, 1e-15);
 }
 
-TEST(RowMotion, HasWhatAnErrorOfEachWheelDoes) {
-  const double step = 1e-3;
-  const RowMotion row = row_motion({0.11, 0.13}, 0.0, 0.1, kRobot);
-  const BodyMotion left = row_motion({0.11 + step, 0.13}, 0.0, 0.1, kRobot).body;
-  const BodyMotion right = row_motion({0.11, 0.13 + step}, 0.0, 0.1, kRobot).body;
-  EXPECT_NEAR(row.by_wheels(step, 0.0).forward, left.forward - row.body.forward, 1e-15);
-  EXPECT_NEAR(row.by_wheels(step, 0.0).turn, left.turn - row.body.turn, 1e-15);
-  EXPECT_NEAR(row.by_wheels(0.0, step).forward, right.forward - row.body.forward, 1e-15);
-  EXPECT_NEAR(row.by_wheels(0.0, step).turn, right.turn - row.body.turn, 1e-15);
+/// Two wheels go on as their body does, but for a gyro's part in it.
+TEST(BodyMotion, IsAddedToTwoWheelsAsTheyWouldShowIt) {
+  MotionRows drive;
+  drive.t = {0.1};
+  testing::add_travels(drive, 0.11, 0.13, 0.4);
+  add_motion(drive, 0, {0.02, 0.0, 0.5}, kRobot);
+  EXPECT_NEAR(drive.pair.left[0], 0.03, 1e-15);
+  EXPECT_NEAR(drive.pair.right[0], 0.25, 1e-15);
+  const BodyMotion again = body_motion(drive.pair.at(0), 0.4);
+  EXPECT_NEAR(again.forward, drive.forward[0], 1e-15);
+  EXPECT_NEAR(again.turn, drive.turn[0], 1e-15);
+  drive.gyro.emplace_back();
+  add_motion(drive, 0, {0.02, 0.0, 0.5}, kRobot);
+  EXPECT_NEAR(drive.pair.left[0], 0.03, 1e-15);
+  EXPECT_NEAR(drive.forward[0], 0.16, 1e-15);
+}
+
+/// A wheel that stands is no less still where the motion, of which travels could be made, is
+/// rounded; of other drives two wheels at the wheelbase show the motion.
+TEST(BodyMotion, OwnTravelsAreThoseOfTheWheelsWhereThereAreTwo) {
+  MotionRows drive;
+  drive.t = {0.1};
+  testing::add_travels(drive, 0.0, 0.13, 0.4);
+  EXPECT_EQ(own_travel(drive, 0, kRobot).left, 0.0);
+  EXPECT_EQ(own_travel(drive, 0, kRobot).right, 0.13);
+  drive.pair = {};
+  drive.forward = {0.1};
+  drive.turn = {0.5};
+  EXPECT_NEAR(own_travel(drive, 0, kRobot).left, 0.0, 1e-15);
+  EXPECT_NEAR(own_travel(drive, 0, kRobot).right, 0.2, 1e-15);
+  EXPECT_NEAR(mean_travel(drive.motion(0), kRobot), 0.1, 1e-15);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "drive/causal_variables.hpp"
 
 #include "drive/added_rows.hpp"
+#include "driven.hpp"
 
 #include <cmath>
 #include <vector>
@@ -21,11 +22,11 @@ constexpr double kWheelbase = 0.4;  // m
 /// Rows of 0.1 s: 2 s at rest, 2 s spin left, 3 s ahead at 0.5 m/s, 3 s of a bend, 3 s back.
 MotionRows plain_drive() {
   MotionRows drive;
-  add_rows(drive, 20, 0.0, 0.0);
-  add_rows(drive, 20, -0.02, 0.02);
-  add_rows(drive, 30, 0.05, 0.05);
-  add_rows(drive, 30, 0.03, 0.05);
-  add_rows(drive, 30, -0.05, -0.05);
+  add_rows(drive, 20, 0.0, 0.0, kWheelbase);
+  add_rows(drive, 20, -0.02, 0.02, kWheelbase);
+  add_rows(drive, 30, 0.05, 0.05, kWheelbase);
+  add_rows(drive, 30, 0.03, 0.05, kWheelbase);
+  add_rows(drive, 30, -0.05, -0.05, kWheelbase);
   return drive;
 }
 
@@ -33,18 +34,19 @@ const Robot kRobot{.wheelbase = kWheelbase};
 
 /// By two wheels, without a gyro.
 CausalRow next(const CausalVariables& variables, double left, double right, double duration) {
-  return variables.next({left, right}, body_motion({left, right}, kRobot), duration);
+  return variables.next({{left, right}}, body_motion({left, right}, kWheelbase), duration);
 }
 void take(CausalVariables& variables, double left, double right, double duration) {
-  variables.take({left, right}, body_motion({left, right}, kRobot), duration);
+  variables.take({{left, right}}, body_motion({left, right}, kWheelbase), duration);
 }
 
 std::vector<CausalRow> causal_rows(const MotionRows& drive) {
   CausalVariables variables;
   std::vector<CausalRow> rows;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    rows.push_back(next(variables, drive.left[row], drive.right[row], drive.duration(row)));
-    take(variables, drive.left[row], drive.right[row], drive.duration(row));
+    rows.push_back(
+        next(variables, drive.pair.left[row], drive.pair.right[row], drive.duration(row)));
+    take(variables, drive.pair.left[row], drive.pair.right[row], drive.duration(row));
   }
   return rows;
 }
@@ -55,7 +57,7 @@ TEST(CausalVariables, AreThoseOfTheWholeDriveButForRates) {
   const std::vector<Pose> nowhere(drive.rows());
   const RowVariables middle = row_variables(drive, kRobot, {}, nowhere, 0);
   const RowVariables end = instant_variables(drive, kRobot, drive.t, nowhere, 0);
-  const std::vector<MotionKind> kinds = motion_kinds(drive);
+  const std::vector<MotionKind> kinds = motion_kinds(drive, kRobot);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     EXPECT_EQ(rows[k].kind, kinds[k]);
     EXPECT_NEAR(rows[k].t, middle.at("t")[k], 1e-9);
@@ -74,15 +76,15 @@ TEST(CausalVariables, AreThoseOfTheWholeDriveButForRates) {
 TEST(CausalVariables, RatesAreMeansOverTheLastSecondOfOneKindOfMotion) {
   const MotionRows drive = plain_drive();
   const std::vector<CausalRow> rows = causal_rows(drive);
-  const std::vector<MotionKind> kinds = motion_kinds(drive);
+  const std::vector<MotionKind> kinds = motion_kinds(drive, kRobot);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     double travel = 0.0;
     double turn = 0.0;
     std::size_t first = k + 1;
     while (first > 0 && k - (first - 1) <= 10 && kinds[first - 1] == kinds[k]) {
       --first;
-      travel += 0.5 * (drive.left[first] + drive.right[first]);
-      turn += (drive.right[first] - drive.left[first]) / kWheelbase;
+      travel += 0.5 * (drive.pair.left[first] + drive.pair.right[first]);
+      turn += (drive.pair.right[first] - drive.pair.left[first]) / kWheelbase;
     }
     const double time = 0.1 * static_cast<double>(k - first + 1);
     EXPECT_NEAR(rows[k].speed, travel / time, 1e-9) << k;
@@ -105,8 +107,7 @@ TEST(CausalVariables, RatesAreHalfASecondLateWhileTheyChange) {
   for (int k = 0; k < 100; ++k) {
     const double speed = 0.5 + 0.2 * 0.1 * (k + 0.5);  // at the row's middle
     drive.t.push_back(0.1 * (k + 1));
-    drive.left.push_back(0.1 * speed);
-    drive.right.push_back(0.1 * speed);
+    testing::add_travels(drive, 0.1 * speed, 0.1 * speed, kWheelbase);
   }
   const std::vector<CausalRow> rows = causal_rows(drive);
   const RowVariables whole = row_variables(drive, kRobot, {}, std::vector<Pose>(drive.rows()), 0);

@@ -4,6 +4,8 @@
 // Stops and legs as the file format defines them.
 #include "drive/legs.hpp"
 
+#include "driven.hpp"
+
 #include <gtest/gtest.h>
 
 namespace trussmap::legs_test {
@@ -14,8 +16,7 @@ DrivenRecording straight_drive(std::vector<Sighting> sightings) {
   DrivenRecording recording;
   for (int k = 1; k <= 10; ++k) {
     recording.drive.t.push_back(k);
-    recording.drive.left.push_back(1.0);
-    recording.drive.right.push_back(1.0);
+    testing::add_travels(recording.drive, 1.0, 1.0);
   }
   recording.sightings = std::move(sightings);
   return recording;
@@ -49,7 +50,7 @@ TEST(Legs, JoinDifferentReferencesFarEnoughApart) {
 
 TEST(Legs, ReverseCountsAsDrivenPathAndRowsAreCutLinearly) {
   DrivenRecording recording = straight_drive({});
-  recording.drive.left[5] = recording.drive.right[5] = -1.0;
+  recording.drive.forward[5] = -1.0;
   const std::vector<double> path = driven_path(recording.drive);
   EXPECT_DOUBLE_EQ(path.back(), 10.0);
   EXPECT_DOUBLE_EQ(path_at(recording.drive, path, 0.0), 0.0);

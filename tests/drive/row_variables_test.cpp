@@ -5,6 +5,7 @@
 #include "drive/row_variables.hpp"
 
 #include "drive/added_rows.hpp"
+#include "driven.hpp"
 
 #include <algorithm>
 
@@ -20,10 +21,10 @@ using Values = std::vector<double>;
 /// 2 s at rest, 2 s spin left, 3 s ahead at 0.5 m/s, 3 s back; rows of 0.1 s.
 MotionRows plain_drive() {
   MotionRows drive;
-  add_rows(drive, 20, 0.0, 0.0);
-  add_rows(drive, 20, -0.02, 0.02);
-  add_rows(drive, 30, 0.05, 0.05);
-  add_rows(drive, 30, -0.05, -0.05);
+  add_rows(drive, 20, 0.0, 0.0, 0.4);
+  add_rows(drive, 20, -0.02, 0.02, 0.4);
+  add_rows(drive, 30, 0.05, 0.05, 0.4);
+  add_rows(drive, 30, -0.05, -0.05, 0.4);
   drive.covariates.push_back({"lights", Values(100, 1.0)});
   return drive;
 }
@@ -59,8 +60,7 @@ TEST(RowVariables, TurningIsToldByTheMotionItBelongsTo) {
   MotionRows drive = plain_drive();
   for (int k = 0; k < 20; ++k) {  // a bend to the right: 0.4 m/s, -0.5 rad/s
     drive.t.push_back(drive.t.back() + 0.1);
-    drive.left.push_back(0.05);
-    drive.right.push_back(0.03);
+    testing::add_travels(drive, 0.05, 0.03, 0.4);
   }
   drive.covariates.front().values.resize(drive.rows(), 1.0);
   const RowVariables v = variables_of(drive);
@@ -102,9 +102,10 @@ TEST(RowVariables, TimeAndDistanceAreAtTheRowsMiddle) {
 TEST(RowVariables, RatesAreSmoothed) {
   MotionRows drive = plain_drive();
   for (std::size_t row = 40; row < 70; ++row) {
-    drive.left[row] += row % 2 == 0 ? 0.01 : -0.01;
-    drive.right[row] += row % 2 == 0 ? 0.01 : -0.01;
+    drive.pair.left[row] += row % 2 == 0 ? 0.01 : -0.01;
+    drive.pair.right[row] += row % 2 == 0 ? 0.01 : -0.01;
   }
+  testing::retake(drive, 0.4);
   const RowVariables v = variables_of(drive);
   for (std::size_t row = 45; row < 65; ++row) {
     EXPECT_NEAR(v.at("speed")[row], 0.5, 0.1 / 11.0 + 1e-9) << row;  // a single row is off by 0.1

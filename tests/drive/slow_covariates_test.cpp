@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "drive/slow_covariates.hpp"
 
+#include "driven.hpp"
+
 #include <cmath>
 #include <random>
 
@@ -21,8 +23,7 @@ DrivenRecording day(double warmer = 0.0) {
   for (int row = 0; row < 12000; ++row) {
     const double t = 0.1 * (row + 1);
     recording.drive.t.push_back(t);
-    recording.drive.left.push_back(0.05);
-    recording.drive.right.push_back(0.05);
+    testing::add_travels(recording.drive, 0.05, 0.05);
     const double heat = warmer + 20.0 + 15.0 * (1.0 - std::exp(-t / 300.0));
     const double values[] = {heat,
                              25.0 - 2e-3 * t,
@@ -54,8 +55,9 @@ TEST(SlowCovariates, NeedEnoughRowsToSaySo) {
   DrivenRecording brief = day();
   for (Covariate& one : brief.drive.covariates) one.values.resize(50);
   brief.drive.t.resize(50);
-  brief.drive.left.resize(50);
-  brief.drive.right.resize(50);
+  brief.drive.forward.resize(50);
+  brief.drive.turn.resize(50);
+  brief.drive.pair = {};
   EXPECT_TRUE(slow_covariates({brief}).empty());
 }
 

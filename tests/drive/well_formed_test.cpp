@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "drive/well_formed.hpp"
 
+#include "driven.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/calibrate.hpp"
 #include "trussmap/fit_model.hpp"
@@ -21,8 +22,7 @@ DrivenRecording straight() {
   recording.name = "mine";
   for (int row = 1; row <= 10; ++row) {
     recording.drive.t.push_back(row);
-    recording.drive.left.push_back(0.5);
-    recording.drive.right.push_back(0.5);
+    testing::add_travels(recording.drive, 0.5, 0.5);
     recording.drive.heading.push_back(row == 4 ? kAbsent : 0.0);
   }
   recording.drive.covariates = {{"load", std::vector<double>(10, 1.0)}};
@@ -35,7 +35,7 @@ std::string refusal(const std::function<void(DrivenRecording&)>& spoil) {
   DrivenRecording recording = straight();
   spoil(recording);
   try {
-    require_well_formed(recording);
+    require_well_formed(recording, Robot());
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -58,14 +58,24 @@ TEST(WellFormed, WhatIsWrongIsNamed) {
   };
   const std::vector<Spoilt> all = {
       {"column left of the drive has 9 rows, expected 10",
-       [](DrivenRecording& r) { r.drive.left.pop_back(); }},
-      {"column right of the drive has 0 rows", [](DrivenRecording& r) { r.drive.right.clear(); }},
+       [](DrivenRecording& r) { r.drive.pair.left.pop_back(); }},
+      {"column right of the drive has 0 rows",
+       [](DrivenRecording& r) { r.drive.pair.right.clear(); }},
       {"column heading of the drive has 3 rows",
        [](DrivenRecording& r) { r.drive.heading.resize(3); }},
       {"column load of the drive has 11 rows",
        [](DrivenRecording& r) { r.drive.covariates[0].values.push_back(1.0); }},
       {"column left of the drive is not finite in row 2",
-       [](DrivenRecording& r) { r.drive.left[2] = kAbsent; }},
+       [](DrivenRecording& r) { r.drive.pair.left[2] = kAbsent; }},
+      {"column forward of the drive has 9 rows",
+       [](DrivenRecording& r) { r.drive.forward.pop_back(); }},
+      {"column turn of the drive is not finite in row 7",
+       [](DrivenRecording& r) { r.drive.turn[7] = kAbsent; }},
+      {"its wheels turn it otherwise than two that are 0.34 m apart",
+       [](DrivenRecording& r) {
+         r.drive.pair.right[4] += 0.1;
+         testing::retake(r.drive, 0.35);
+       }},
       {"t of the drive does not increase in row 6",
        [](DrivenRecording& r) { std::swap(r.drive.t[5], r.drive.t[6]); }},
       {"sightings are not in order of time",
@@ -87,7 +97,7 @@ TEST(WellFormed, WhatIsWrongIsNamed) {
        [](DrivenRecording& r) {
          r.drive = {};
          r.drive.t = {1.0};
-         r.drive.left = r.drive.right = {0.5};
+         testing::add_travels(r.drive, 0.5, 0.5);
        }},
   };
   for (const Spoilt& one : all) {
@@ -99,7 +109,7 @@ TEST(WellFormed, WhatIsWrongIsNamed) {
 
 TEST(WellFormed, EveryCallThatReadsRecordingsAsksForIt) {
   DrivenRecording recording = straight();
-  recording.drive.left.clear();
+  recording.drive.pair.left.clear();
   EXPECT_THROW(static_cast<void>(build_map({recording}, Model())), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(build_map({recording}, Model(), {.method = Method::adjustment})),
                std::invalid_argument);

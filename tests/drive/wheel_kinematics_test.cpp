@@ -38,12 +38,11 @@ Recording recording_of(const std::vector<std::string>& columns,
   return recording;
 }
 
-void expect_motion(const MotionRows& drive, const std::vector<Twist>& expected,
-                   const Robot& robot) {
+void expect_motion(const MotionRows& drive, const std::vector<Twist>& expected) {
   for (std::size_t row = 0; row < expected.size(); ++row) {
-    EXPECT_NEAR(0.5 * (drive.left[row] + drive.right[row]), expected[row].f, 1e-14);
+    EXPECT_NEAR(drive.forward[row], expected[row].f, 1e-14);
     EXPECT_NEAR(drive.slip(row), expected[row].s, 1e-14);
-    EXPECT_NEAR((drive.right[row] - drive.left[row]) / robot.wheelbase, expected[row].a, 1e-13);
+    EXPECT_NEAR(drive.turn[row], expected[row].a, 1e-13);
   }
 }
 
@@ -60,11 +59,9 @@ void expect_derivatives(const Recording& recording, const Robot& robot) {
     const MotionRows down = with_wheels(less, robot).drive;
     for (std::size_t row = 0; row < up.rows(); ++row) {
       const std::array<double, 3>& by = here.drive.wheels[k].by_reading[row];
-      const double left = (up.left[row] - down.left[row]) / (2.0 * kStep);
-      const double right = (up.right[row] - down.right[row]) / (2.0 * kStep);
-      EXPECT_NEAR(by[0], 0.5 * (left + right), 1e-8);
+      EXPECT_NEAR(by[0], (up.forward[row] - down.forward[row]) / (2.0 * kStep), 1e-8);
       EXPECT_NEAR(by[1], (up.slip(row) - down.slip(row)) / (2.0 * kStep), 1e-8);
-      EXPECT_NEAR(by[2], (right - left) / robot.wheelbase, 1e-7);
+      EXPECT_NEAR(by[2], (up.turn[row] - down.turn[row]) / (2.0 * kStep), 1e-7);
     }
   }
 }
@@ -82,7 +79,7 @@ TEST_P(WheelKinematics, ContactPointsGiveTheBodysMotionBack) {
     for (std::size_t k = 0; k < readings.size(); ++k) readings[k].push_back(shown[k]);
   }
   const Recording recording = recording_of(robot.columns, readings);
-  expect_motion(with_wheels(recording, robot).drive, bodies, robot);
+  expect_motion(with_wheels(recording, robot).drive, bodies);
   expect_derivatives(recording, robot);
 }
 
@@ -103,8 +100,9 @@ TEST(WheelColumns, SkidSteerTakesTheMeansOfItsSides) {
   robot.columns = {"fl", "rl", "fr", "rr"};
   const Recording recording = recording_of(robot.columns, {{0.1}, {0.3}, {0.5}, {0.7}});
   const MotionRows drive = with_wheels(recording, robot).drive;
-  EXPECT_NEAR(drive.left[0], 0.2, 1e-15);
-  EXPECT_NEAR(drive.right[0], 0.6, 1e-15);
+  EXPECT_NEAR(drive.forward[0], 0.4, 1e-15);  // of 0.2 and 0.6 m
+  EXPECT_NEAR(drive.turn[0], 0.5, 1e-15);
+  EXPECT_TRUE(drive.pair.empty());
   EXPECT_TRUE(drive.sideways.empty());
   expect_derivatives(recording, robot);
 }
@@ -131,7 +129,7 @@ TEST(WheelColumns, AnyWheelsAtAnyPlaces) {
     const Recording recording = recording_of(robot.columns, readings);
     const MotionRows drive = with_wheels(recording, robot).drive;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
-      EXPECT_NEAR(0.5 * (drive.left[row] + drive.right[row]), twists(true)[row].f, 1e-11);
+      EXPECT_NEAR(drive.forward[row], twists(true)[row].f, 1e-11);
       EXPECT_NEAR(drive.slip(row), twists(true)[row].s, 1e-11);
     }
   }
@@ -157,8 +155,14 @@ TEST(WheelColumns, TwoNamedWheelsAreADifferentialDrive) {
   robot.columns = {"port", "starboard"};
   const MotionRows drive =
       with_wheels(recording_of({"port", "starboard"}, {{0.1, 0.2}, {0.3, 0.4}}), robot).drive;
-  EXPECT_EQ(drive.left, (std::vector<double>{0.1, 0.2}));
-  EXPECT_EQ(drive.right, (std::vector<double>{0.3, 0.4}));
+  EXPECT_EQ(drive.pair.left, (std::vector<double>{0.1, 0.2}));
+  EXPECT_EQ(drive.pair.right, (std::vector<double>{0.3, 0.4}));
+  EXPECT_NEAR(drive.forward[1], 0.3, 1e-15);
+  EXPECT_NEAR(drive.turn[1], 0.2 / 0.34, 1e-15);
+  robot.wheelbase = 0.0;
+  EXPECT_THROW(
+      static_cast<void>(with_wheels(recording_of({"port", "starboard"}, {{0.1}, {0.3}}), robot)),
+      std::invalid_argument);
   EXPECT_TRUE(drive.wheels.empty());
 }
 
@@ -173,7 +177,7 @@ TEST(Unicycle, MovesAsItsColumnsSay) {
   const Robot robot = unicycle({"v", "w"});
   const Recording recording = recording_of({"v", "w"}, {{0.1, -0.2, 0.0}, {0.3, 0.0, -2.0}});
   expect_motion(with_wheels(recording, robot).drive,
-                {{0.1, 0.0, 0.3}, {-0.2, 0.0, 0.0}, {0.0, 0.0, -2.0}}, robot);
+                {{0.1, 0.0, 0.3}, {-0.2, 0.0, 0.0}, {0.0, 0.0, -2.0}});
 }
 
 TEST(Unicycle, OfTravelAloneTurnsByItsGyro) {
@@ -183,7 +187,7 @@ TEST(Unicycle, OfTravelAloneTurnsByItsGyro) {
   recording.drive.yaw_rate = {0.5, -0.25, 1.0};
   const double dt = recording.drive.duration(0);
   const MotionRows drive = with_wheels(recording, robot).drive;
-  expect_motion(drive, {{0.1, 0.0, 0.5 * dt}, {0.2, 0.0, -0.25 * dt}, {0.0, 0.0, dt}}, robot);
+  expect_motion(drive, {{0.1, 0.0, 0.5 * dt}, {0.2, 0.0, -0.25 * dt}, {0.0, 0.0, dt}});
   EXPECT_FALSE(drive.has_gyro());  // it is no sensor beside the wheels
   recording.drive.yaw_rate[1] = kAbsent;
   EXPECT_THROW((void)with_wheels(recording, robot), InputError);

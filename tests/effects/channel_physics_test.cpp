@@ -21,8 +21,8 @@ const Robot kRobot{.wheelbase = kWheelbase};
 
 /// What the robot did in a row, given what its wheels say: ds, slip, dtheta, reading less heading.
 Eigen::Vector4d motion(Channel channel, double g, const RowMotion& row) {
-  double left = row.left;
-  double right = row.right;
+  double left = row.body.forward - 0.5 * kWheelbase * row.body.turn;
+  double right = row.body.forward + 0.5 * kWheelbase * row.body.turn;
   if (channel == Channel::left || channel == Channel::wheels) left *= 1.0 + g;
   if (channel == Channel::right || channel == Channel::wheels) right *= 1.0 + g;
   if (channel == Channel::difference) {
@@ -68,7 +68,7 @@ Eigen::Vector2d reading(const ViewPattern& pattern) {
 
 RowMotion any_row(std::mt19937_64& random) {
   std::uniform_real_distribution<double> travel(-0.2, 0.3);
-  return row_motion({travel(random), travel(random)}, 0.0, 0.1, kRobot);
+  return row_motion(body_motion({travel(random), travel(random)}, kWheelbase), 0.1, kRobot);
 }
 
 bool of_gyro(Channel channel) {
@@ -206,12 +206,12 @@ TEST_P(EveryChannel, LeavesTheRobotsMotionWhereARecordingIsFreedFromIt) {
     const RowMotion row = any_row(random);
     MotionRows drive;
     drive.t = {0.1, 0.2};
-    drive.left = {row.left, row.left};
-    drive.right = {row.right, row.right};
+    drive.forward = {row.body.forward, row.body.forward};
+    drive.turn = {row.body.turn, row.body.turn};
     free_drive(GetParam(), {0.07, 0.07}, kRobot, drive);
     const Eigen::Vector4d did = motion(GetParam(), 0.07, row);
-    EXPECT_NEAR(0.5 * (drive.left[1] + drive.right[1]), did[0], 1e-15);
-    EXPECT_NEAR((drive.right[1] - drive.left[1]) / kWheelbase, did[2], 1e-14);
+    EXPECT_NEAR(drive.forward[1], did[0], 1e-15);
+    EXPECT_NEAR(drive.turn[1], did[2], 1e-14);
   }
 }
 

@@ -5,6 +5,7 @@
 #include "effects/corrected_recording.hpp"
 
 #include "drive/row_variables.hpp"
+#include "driven.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -19,8 +20,9 @@ constexpr double kWheelbase = 0.5;
 DrivenRecording recording() {
   DrivenRecording r;
   r.drive.t = {1.0, 2.0, 3.0};
-  r.drive.left = {0.2, -0.1, 0.4};
-  r.drive.right = {0.2, 0.1, 0.6};
+  testing::add_travels(r.drive, 0.2, 0.2, kWheelbase);
+  testing::add_travels(r.drive, -0.1, 0.1, kWheelbase);
+  testing::add_travels(r.drive, 0.4, 0.6, kWheelbase);
   r.drive.heading = {0.1, 0.5, 0.9};
   r.drive.covariates.push_back({"payload_kg", {0.0, 10.0, 20.0}});
   r.sightings.push_back({1.5, "A", 2.0, 3.1});
@@ -51,17 +53,16 @@ TEST(CorrectedRecording, EveryWheelChannelDoesWhatTheTableSays) {
                          Row{Channel::drift, 0.5, 0.5}, Row{Channel::advance, 0.6, 0.4},
                          Row{Channel::rotate, 0.5, 0.5}}) {
     const MotionRows drive = corrected(row.channel, "1", g).drive;
-    EXPECT_NEAR(0.5 * (drive.left[2] + drive.right[2]), row.travel, 1e-14) << name_of(row.channel);
-    EXPECT_NEAR((drive.right[2] - drive.left[2]) / kWheelbase, row.turn, 1e-14)
-        << name_of(row.channel);
+    EXPECT_NEAR(drive.forward[2], row.travel, 1e-14) << name_of(row.channel);
+    EXPECT_NEAR(drive.turn[2], row.turn, 1e-14) << name_of(row.channel);
   }
 }
 
 TEST(CorrectedRecording, ShapesAreEvaluatedRowByRow) {
   const MotionRows drive = corrected(Channel::left, "payload_kg", 0.01).drive;
-  EXPECT_NEAR(drive.left[0], 0.2, 1e-15);
-  EXPECT_NEAR(drive.left[1], -0.11, 1e-15);
-  EXPECT_NEAR(drive.left[2], 0.48, 1e-15);
+  EXPECT_NEAR(drive.pair.left[0], 0.2, 1e-15);
+  EXPECT_NEAR(drive.pair.left[1], -0.11, 1e-15);
+  EXPECT_NEAR(drive.pair.left[2], 0.48, 1e-15);
 }
 
 TEST(CorrectedRecording, ReadingsLoseWhatWasAdded) {

@@ -36,7 +36,7 @@ inline std::vector<Piece> pieces_between(const MotionRows& drive, double from, d
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const double end = drive.t[row];
     const double begin = row == 0 ? 2.0 * drive.t[0] - drive.t[1] : drive.t[row - 1];
-    const double path = std::abs(0.5 * (drive.left[row] + drive.right[row]));
+    const double path = std::abs(0.5 * (drive.pair.left[row] + drive.pair.right[row]));
     const double a = std::max(begin, from);
     const double b = std::min(end, to);
     if (a < b) {
@@ -44,8 +44,9 @@ inline std::vector<Piece> pieces_between(const MotionRows& drive, double from, d
       const double last = (b - begin) / (end - begin);
       const double part = (b - a) / (end - begin);
       const bool reads = end <= to && !drive.heading.empty();
-      pieces.push_back({a, b, driven + first * path, driven + last * path, part * drive.left[row],
-                        part * drive.right[row], reads ? drive.heading[row] : kAbsent});
+      pieces.push_back({a, b, driven + first * path, driven + last * path,
+                        part * drive.pair.left[row], part * drive.pair.right[row],
+                        reads ? drive.heading[row] : kAbsent});
     }
     driven += path;
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/motion_changes.hpp"
 
+#include "driven.hpp"
+
 #include <gtest/gtest.h>
 
 namespace trussmap::motion_changes_test {
@@ -11,15 +13,13 @@ namespace {
 void add(MotionRows& drive, int rows, double left, double right) {
   for (int k = 0; k < rows; ++k) {
     drive.t.push_back(0.1 * static_cast<double>(drive.rows() + 1));
-    drive.left.push_back(left);
-    drive.right.push_back(right);
+    testing::add_travels(drive, left, right, 0.3);
   }
 }
 
 std::vector<double> changes(const MotionRows& drive) {
   const Robot robot{0.3};
-  return motion_changes(drive, segment_rows(drive, drive.start(), drive.t.back(), robot), robot,
-                        {});
+  return motion_changes(drive, segment_rows(drive, drive.start(), drive.t.back()), robot, {});
 }
 
 TEST(MotionChanges, ASpinAndADriveAreTwoMotions) {

@@ -4,6 +4,7 @@
 // Beacons by ranges alone: against a fine grid, the mirror, and whole recordings.
 #include "estimation/multilateration.hpp"
 
+#include "driven.hpp"
 #include "estimation/simulated_recordings.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/fit_model.hpp"
@@ -134,8 +135,7 @@ DrivenRecording past_a_beacon(SensorParts parts) {
   recording.name = "past a beacon";
   for (int k = 1; k <= 100; ++k) {
     recording.drive.t.push_back(0.5 * k);
-    recording.drive.left.push_back(0.2);
-    recording.drive.right.push_back(0.2);
+    testing::add_travels(recording.drive, 0.2, 0.2);
     if (k % 4 != 0) continue;
     const Vector2 robot(0.2 * k, 0.0);
     const Vector2 beacon = Vector2(9.0, 5.0) - robot;

@@ -51,8 +51,8 @@ DrivenRecording uneven_recording(std::uint64_t seed) {
     const double path = kind < 0.15 ? 0.0 : (kind < 0.3 ? -1.0 : 1.0) * (0.05 + uniform(random));
     const double turn = path == 0.0 ? 0.0 : 0.6 * (uniform(random) - 0.5);
     recording.drive.t.push_back(t);
-    recording.drive.left.push_back(path - 0.5 * kRobot.wheelbase * turn);
-    recording.drive.right.push_back(path + 0.5 * kRobot.wheelbase * turn);
+    testing::add_travels(recording.drive, path - 0.5 * kRobot.wheelbase * turn,
+                         path + 0.5 * kRobot.wheelbase * turn, kRobot.wheelbase);
     heading += turn;
     const bool read = row % 3 != 1 && row / 6 != 2;  // a whole segment without
     recording.drive.heading.push_back(read ? wrap_angle(heading + 0.1 * uniform(random)) : kAbsent);
@@ -200,8 +200,7 @@ TEST(NoiseStatesWithin, OfASlowProcessGoesAsOneOverItsLength) {
   DrivenRecording recording;
   for (int row = 0; row < 21; ++row) {
     recording.drive.t.push_back(0.1 * (row + 1));
-    recording.drive.left.push_back(0.05);
-    recording.drive.right.push_back(0.05);
+    testing::add_travels(recording.drive, 0.05, 0.05);
   }
   Sighting seen;
   seen.t = 0.1;
@@ -229,8 +228,8 @@ TEST(NoiseStatesWithin, AnyWayAProcessMayStandStill) {
   for (int row = 0; row < 40; ++row) {
     const bool spins = row / 10 % 2 == 1;
     recording.drive.t.push_back(0.1 * (row + 1));
-    recording.drive.left.push_back(spins ? -0.03 : 0.05);
-    recording.drive.right.push_back(spins ? 0.03 : 0.05);
+    testing::add_travels(recording.drive, spins ? -0.03 : 0.05, spins ? 0.03 : 0.05,
+                         kRobot.wheelbase);
   }
   for (const int row : {0, 9, 19, 29, 39}) {
     Sighting seen;
@@ -262,8 +261,7 @@ RecordingProblem views_only(const std::vector<std::pair<double, const char*>>& s
     const double t = 0.1 * (row + 1);
     const bool rests = t > resting_from + 0.05 && t < resting_to + 0.05;
     recording.drive.t.push_back(t);
-    recording.drive.left.push_back(rests ? 0.0 : 0.02);
-    recording.drive.right.push_back(rests ? 0.0 : 0.02);
+    testing::add_travels(recording.drive, rests ? 0.0 : 0.02, rests ? 0.0 : 0.02, kRobot.wheelbase);
   }
   for (const auto& [t, name] : seen) {
     Sighting one;
@@ -552,10 +550,12 @@ void disturb(DrivenRecording& recording, Channel channel, double g) {
     for (double& reading : drive.heading) reading = wrap_angle(reading + g);
   }
   for (std::size_t row = 0; channel == Channel::turn && row < drive.rows(); ++row) {
-    const double less = 0.5 * (drive.right[row] - drive.left[row]) * (1.0 - 1.0 / (1.0 + g));
-    drive.left[row] += less;
-    drive.right[row] -= less;
+    const double less =
+        0.5 * (drive.pair.right[row] - drive.pair.left[row]) * (1.0 - 1.0 / (1.0 + g));
+    drive.pair.left[row] += less;
+    drive.pair.right[row] -= less;
   }
+  testing::retake(drive);
   for (Sighting& seen : recording.sightings) {
     if (seen.standing()) continue;
     if (channel == Channel::range) seen.range += g;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Coefficients of effects, eliminated as a dense border.
+#include "driven.hpp"
 #include "estimation/recording_adjustment.hpp"
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_start.hpp"
@@ -25,11 +26,12 @@ using testing::SimulatedRecording;
 void disturb(MotionRows& drive, double wheelbase, double turn, double offset) {
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     // True turn = recorded turn (1 + g): the wheels went less far apart than they should have.
-    const double path = 0.5 * (drive.left[row] + drive.right[row]);
-    const double angle = (drive.right[row] - drive.left[row]) / wheelbase / (1.0 + turn);
-    drive.left[row] = path - 0.5 * wheelbase * angle;
-    drive.right[row] = path + 0.5 * wheelbase * angle;
+    const double path = 0.5 * (drive.pair.left[row] + drive.pair.right[row]);
+    const double angle = (drive.pair.right[row] - drive.pair.left[row]) / wheelbase / (1.0 + turn);
+    drive.pair.left[row] = path - 0.5 * wheelbase * angle;
+    drive.pair.right[row] = path + 0.5 * wheelbase * angle;
   }
+  testing::retake(drive, wheelbase);
   for (double& reading : drive.heading) reading = wrap_angle(reading + offset);
 }
 

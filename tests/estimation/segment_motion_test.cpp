@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/segment_motion.hpp"
 
+#include "driven.hpp"
+
 #include <cmath>
 #include <random>
 
@@ -24,8 +26,8 @@ MotionRows drive_with_compass(int rows, std::uint64_t seed) {
     const double path = phase > 0.5 && phase < 0.6 ? 0.0 : 3.0 / rows;
     const double turn = phase < 0.5 ? 0.8 / rows : phase < 0.6 ? 9.0 / rows : 0.0;
     drive.t.push_back(0.1 * (k + 1));
-    drive.left.push_back(path - 0.5 * kWheelbase * turn);
-    drive.right.push_back(path + 0.5 * kWheelbase * turn);
+    testing::add_travels(drive, path - 0.5 * kWheelbase * turn, path + 0.5 * kWheelbase * turn,
+                         kWheelbase);
     heading += turn;
     drive.heading.push_back(k % 3 == 0 ? wrap_angle(heading + 0.02 * uniform(random)) : kAbsent);
   }
@@ -38,16 +40,20 @@ Vector4 numbers(const SegmentMotion& motion) {
 }
 
 Vector4 numbers_of(const MotionRows& drive) {
-  return numbers(segment_motion(segment_rows(drive, 0.0, drive.t.back(), kRobot)));
+  return numbers(segment_motion(segment_rows(drive, 0.0, drive.t.back())));
 }
 
 /// Central difference by one of the drive's numbers.
-Vector4 slope_by(MotionRows drive, std::vector<double> MotionRows::*column, std::size_t row) {
+template <typename Column>
+Vector4 slope_by(const MotionRows& drive, const Column& column, std::size_t row) {
   constexpr double kStep = 1e-6;
-  (drive.*column)[row] += kStep;
-  const Vector4 after = numbers_of(drive);
-  (drive.*column)[row] -= 2.0 * kStep;
-  return (after - numbers_of(drive)) / (2.0 * kStep);
+  const auto with = [&](double more) {
+    MotionRows other = drive;
+    column(other)[row] += more;
+    testing::retake(other, kWheelbase);
+    return numbers_of(other);
+  };
+  return (with(kStep) - with(-kStep)) / (2.0 * kStep);
 }
 
 TEST(SegmentMotion, CovarianceIsThatOfIndependentWheelsAndReadings) {
@@ -60,16 +66,17 @@ TEST(SegmentMotion, CovarianceIsThatOfIndependentWheelsAndReadings) {
   const auto add = [&expected](const Vector4& slope, double variance) {
     expected += variance * slope * slope.transpose();
   };
+  const auto left = [](MotionRows& of) -> std::vector<double>& { return of.pair.left; };
+  const auto right = [](MotionRows& of) -> std::vector<double>& { return of.pair.right; };
+  const auto heading = [](MotionRows& of) -> std::vector<double>& { return of.heading; };
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    add(slope_by(drive, &MotionRows::left, row),
-        noise.left * noise.left * std::abs(drive.left[row]));
-    add(slope_by(drive, &MotionRows::right, row),
-        noise.right * noise.right * std::abs(drive.right[row]));
+    add(slope_by(drive, left, row), noise.left * noise.left * std::abs(drive.pair.left[row]));
+    add(slope_by(drive, right, row), noise.right * noise.right * std::abs(drive.pair.right[row]));
     if (!std::isnan(drive.heading[row])) {
-      add(slope_by(drive, &MotionRows::heading, row), noise.compass * noise.compass);
+      add(slope_by(drive, heading, row), noise.compass * noise.compass);
     }
   }
-  const auto rows = segment_rows(drive, 0.0, drive.t.back(), kRobot);
+  const auto rows = segment_rows(drive, 0.0, drive.t.back());
   const Matrix4 found = segment_covariance(drive, rows, kRobot, noise);
   for (int r = 0; r < 4; ++r) {
     for (int c = 0; c < 4; ++c) {
@@ -83,7 +90,7 @@ TEST(SegmentMotion, CovarianceIsThatOfIndependentWheelsAndReadings) {
 TEST(SegmentMotion, WithoutReadingsThereIsNoMeanHeading) {
   MotionRows drive = drive_with_compass(30, 2);
   drive.heading.clear();
-  const auto rows = segment_rows(drive, 0.0, drive.t.back(), kRobot);
+  const auto rows = segment_rows(drive, 0.0, drive.t.back());
   EXPECT_EQ(readings_of(rows), 0);
   EXPECT_TRUE(std::isnan(segment_motion(rows).mean_heading));
   EXPECT_EQ(segment_covariance(drive, rows, kRobot, Noise()).row(3).norm(), 0.0);
@@ -96,7 +103,7 @@ TEST(SegmentMotion, MeanHeadingIsTheStartHeadingWhereverItWraps) {
 TEST(SegmentMotion, AMergedSegmentIsTheSumOfItsParts) {
   const MotionRows drive = drive_with_compass(60, 4);
   const auto motion = [&](double from, double to) {
-    return segment_motion(segment_rows(drive, from, to, kRobot)).displacement;
+    return segment_motion(segment_rows(drive, from, to)).displacement;
   };
   const Pose whole = motion(0.0, drive.t.back());
   const Pose parts = compose(motion(0.0, 2.34), motion(2.34, drive.t.back()));
@@ -118,7 +125,7 @@ TEST(SegmentMotion, DerivativesByEffectsAreThoseOfDifferences) {
   }
   const std::vector<const std::vector<DrivePattern>*> effects = {&patterns[0], nullptr,
                                                                  &patterns[2]};
-  const auto rows = segment_rows(drive, 0.05, 4.93, kRobot);
+  const auto rows = segment_rows(drive, 0.05, 4.93);
   const Eigen::Vector3d at(0.3, 0.2, -0.4);
   const SegmentWithEffects segment = segment_motion(rows, effects, at);
   constexpr double kStep = 1e-5;

@@ -3,6 +3,7 @@
 #include "estimation/segment_noise.hpp"
 
 #include "criticism/inverted_recordings.hpp"
+#include "driven.hpp"
 #include "trussmap/arc.hpp"
 
 #include <cmath>
@@ -34,14 +35,14 @@ Segment example(bool compass) {
     const double turn = k < 30 ? 0.015 : k < 40 ? -0.11 : 0.002;
     heading += turn;
     segment.drive.t.push_back(0.1 * (k + 1));
-    segment.drive.left.push_back(ds - 0.5 * kWheelbase * turn);
-    segment.drive.right.push_back(ds + 0.5 * kWheelbase * turn);
+    testing::add_travels(segment.drive, ds - 0.5 * kWheelbase * turn, ds + 0.5 * kWheelbase * turn,
+                         kWheelbase);
     if (compass) {
       segment.drive.heading.push_back(
           k % 7 == 3 ? kAbsent : std::remainder(heading + 0.01 * std::sin(k), 2.0 * M_PI));
     }
   }
-  segment.rows = segment_rows(segment.drive, 0.05, 5.96, kRobot);
+  segment.rows = segment_rows(segment.drive, 0.05, 5.96);
   return segment;
 }
 
@@ -142,10 +143,9 @@ TEST(SegmentNoise, LinearisedWhereTheNoiseIsItIsUnbiasedAsTheRecordIsNot) {
   Segment segment;
   for (int k = 0; k < 60; ++k) {
     segment.drive.t.push_back(0.1 * (k + 1));
-    segment.drive.left.push_back(0.09);
-    segment.drive.right.push_back(0.0903);
+    testing::add_travels(segment.drive, 0.09, 0.0903, kWheelbase);
   }
-  segment.rows = segment_rows(segment.drive, 0.0, 6.0, kRobot);
+  segment.rows = segment_rows(segment.drive, 0.0, 6.0);
   Noise noise;
   noise.left = noise.right = 0.005;
   const auto at = [&](const std::vector<Vector3>& missing) {

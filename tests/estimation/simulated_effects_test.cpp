@@ -43,8 +43,8 @@ Simulated simulate(const Effect& effect) {
 /// What one unit of g does to a row, by the table of channels.
 DrivePattern by_the_table(Channel channel, const MotionRows& drive, std::size_t row,
                           double wheelbase) {
-  const double left = drive.left[row];
-  const double right = drive.right[row];
+  const double left = drive.pair.left[row];
+  const double right = drive.pair.right[row];
   const double path = 0.5 * (left + right);
   const double turn = (right - left) / wheelbase;
   const double duration = drive.t[row] - (row == 0 ? drive.start() : drive.t[row - 1]);

@@ -46,7 +46,7 @@ CorrectedOdometry odometry_for(const MotionRows& drive, const Model& model) {
 CorrectedRow drive_row(CorrectedOdometry& odometry, const MotionRows& drive, std::size_t row) {
   std::vector<double> covariates;
   for (const Covariate& one : drive.covariates) covariates.push_back(one.values[row]);
-  return odometry.drive({drive.duration(row), drive.left[row], drive.right[row],
+  return odometry.drive({drive.duration(row), drive.pair.left[row], drive.pair.right[row],
                          drive.has_compass() ? drive.heading[row] : kAbsent},
                         covariates);
 }
@@ -149,7 +149,7 @@ TEST(CorrectedOdometry, SeesThePathAtItsBest) {
   const DrivenRecording recording = simulated(true);
   double way = 0.0;
   for (std::size_t row = 0; row < recording.drive.rows(); ++row) {
-    way += 0.5 * std::abs(recording.drive.left[row] + recording.drive.right[row]);
+    way += std::abs(recording.drive.forward[row]);
   }
   for (const double a : {0.05, 0.02}) {
     const Model model = with({catalogue_effect("hard iron", {a, 0.0})});
@@ -174,12 +174,12 @@ void expect_late_only(const DrivenRecording& recording, const Robot& robot, Chan
   CausalVariables variables;
   double most = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const WheelWay wheels{drive.left[row], drive.right[row]};
-    const BodyMotion body = body_motion(drive, row, robot);
+    const WheelWay wheels{drive.pair.at(row)};
+    const BodyMotion body = drive.motion(row);
     const CausalRow now = variables.next(wheels, body, drive.duration(row));
     variables.take(wheels, body, drive.duration(row));
     const double f = std::string(shape) == "speed" ? now.speed : now.arc_angle;
-    const double path = 0.5 * std::abs(drive.left[row] + drive.right[row]);
+    const double path = std::abs(drive.forward[row]);
     most += std::abs(a * (f - whole[row])) * (channel == Channel::travel ? path : 1.0);
   }
   const std::vector<TimedPose> after = dead_reckoned_poses(recording, model);
@@ -203,10 +203,10 @@ TEST(CorrectedOdometry, RatesAreLateAndNothingElse) {
 TEST(CorrectedOdometry, RatesOfARealRobotAreLateAndNothingElse) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");
   const Dataset read = read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset6/Robot1"));
-  expect_late_only(testing::driven(read.recording), read.model.robot, Channel::travel, "speed",
-                   -0.1);
-  expect_late_only(testing::driven(read.recording), read.model.robot, Channel::advance, "arc_angle",
-                   -0.1);
+  expect_late_only(testing::driven(read.recording, read.model.robot), read.model.robot,
+                   Channel::travel, "speed", -0.1);
+  expect_late_only(testing::driven(read.recording, read.model.robot), read.model.robot,
+                   Channel::advance, "arc_angle", -0.1);
 }
 
 /// Two wheels have no steering that could be scaled.

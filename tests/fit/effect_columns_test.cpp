@@ -134,12 +134,8 @@ class World {
     return from;
   }
 
-  [[nodiscard]] double ds(std::size_t row) const {
-    return 0.5 * (drive().left[row] + drive().right[row]);
-  }
-  [[nodiscard]] double dtheta(std::size_t row) const {
-    return (drive().right[row] - drive().left[row]) / kInvertedWheelbase;
-  }
+  [[nodiscard]] double ds(std::size_t row) const { return drive().forward[row]; }
+  [[nodiscard]] double dtheta(std::size_t row) const { return drive().turn[row]; }
 
   [[nodiscard]] TruePose at(double t) const {
     if (t <= 0.0) return at_end(-1);
@@ -168,8 +164,8 @@ class World {
       const Here middle{0.5 * (before + made_.headings[row]), dtheta(row) / kInvertedRow,
                         drive().covariates[0].values[row]};
       const double g = a * shape.value(middle);
-      double left = drive().left[row];
-      double right = drive().right[row];
+      double left = drive().pair.left[row];
+      double right = drive().pair.right[row];
       if (channel == Channel::left || channel == Channel::wheels) left *= 1.0 + g;
       if (channel == Channel::right || channel == Channel::wheels) right *= 1.0 + g;
       if (channel == Channel::difference) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Times that are excluded from a fit: what was driven and sighted there counts nowhere.
+#include "driven.hpp"
 #include "estimation/simulated_recordings.hpp"
 #include "fit/fit_state.hpp"
 #include "trussmap/compare.hpp"
@@ -37,9 +38,10 @@ DrivenRecording spoilt(DrivenRecording recording, const TimeSpan& span) {
   const double middle = 0.5 * (span.from + span.to);
   for (std::size_t row = 0; row < recording.drive.rows(); ++row) {
     if (recording.drive.t[row] > middle && recording.drive.t[row] < middle + 1.0) {
-      recording.drive.left[row] += 0.2;
+      recording.drive.pair.left[row] += 0.2;
     }
   }
+  testing::retake(recording.drive);
   for (Sighting& one : recording.sightings) {
     if (one.t > span.from && one.t < span.to) one.landmark = recording.sightings.front().landmark;
   }

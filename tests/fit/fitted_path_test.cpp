@@ -78,9 +78,8 @@ TEST(FittedPath, WhatIsMissingAtANodeIsNoiseOfTheWheelsThatAddsUpToIt) {
   double farthest = 0.0;
   Pose before = path.start;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const double travel = 0.5 * (drive.left[row] + drive.right[row]) + path.missing[row][0];
-    const double turn =
-        (drive.right[row] - drive.left[row]) / model.robot.wheelbase + path.missing[row][1];
+    const double travel = drive.forward[row] + path.missing[row][0];
+    const double turn = drive.turn[row] + path.missing[row][1];
     const double half = before.heading + 0.5 * turn;
     const double chord =
         std::abs(turn) < 1e-9 ? travel : travel * std::sin(0.5 * turn) / (0.5 * turn);
@@ -101,7 +100,8 @@ TEST(FittedPath, WhatIsMissingAtANodeIsNoiseOfTheWheelsThatAddsUpToIt) {
 TEST(FittedPath, PoseAtGoesAlongTheRow) {
   MotionRows drive;
   drive.t = {1.0, 2.0, 4.0};
-  drive.left = drive.right = {1.0, 1.0, 2.0};
+  drive.forward = {1.0, 1.0, 2.0};
+  drive.turn = {0.0, 0.0, 0.0};
   SessionPath path;
   path.start = {0.0, 0.0, 3.0};
   path.ends = {{1.0, 0.0, 3.2}, {1.0, 2.0, -3.0}, {5.0, 2.0, -2.0}};

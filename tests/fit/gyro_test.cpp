@@ -243,7 +243,7 @@ TEST(Gyro, TheRobotReckonsAsOneDoesAfterwards) {
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       const PoseEstimate now =
           odometry
-              .drive({drive.duration(row), drive.left[row], drive.right[row],
+              .drive({drive.duration(row), drive.pair.left[row], drive.pair.right[row],
                       compass ? drive.heading[row] : kAbsent, drive.yaw_rate[row]})
               .pose;
       const PoseEstimate& then = after[row + 1].estimate;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Sightings whose errors last from frame to frame.
+#include "driven.hpp"
 #include "fit/effect_columns.hpp"
 #include "trussmap/fit_model.hpp"
 
@@ -37,8 +38,8 @@ DrivenRecording circling(double memory, std::uint64_t seed) {
     const double swing = swing_at(t);
     const double way = 3.0 * (swing - swing_at(t - kRow));
     recording.drive.t.push_back(t);
-    recording.drive.left.push_back(way * (1.0 - 0.5 * kBase / 3.0));
-    recording.drive.right.push_back(way * (1.0 + 0.5 * kBase / 3.0));
+    testing::add_travels(recording.drive, way * (1.0 - 0.5 * kBase / 3.0),
+                         way * (1.0 + 0.5 * kBase / 3.0), kBase);
     const Vector2 place(3.0 * std::cos(swing), 3.0 * std::sin(swing));
     const double heading = swing + 0.5 * std::numbers::pi;
     for (std::size_t k = 0; k < landmarks.size(); ++k) {

@@ -128,6 +128,7 @@ TEST(FitNoise, FindsTheTruthsOwnNoise) {
 TEST(FitNoise, BesideAMissingEffectIsAsStated) {
   RoughRecording one = rough_recording("", 6);
   one.model.robot.wheelbase *= 1.03;
+  testing::retake(one.recording.drive, one.model.robot.wheelbase);
   const Diagnosis diagnosis = diagnose({one.recording}, one.model);
   ASSERT_EQ(diagnosis.verdict, Diagnosis::Verdict::missing);
   EXPECT_EQ(diagnosis.missing, "wheelbase");
@@ -154,8 +155,7 @@ DrivenRecording straight_drive(double seconds, double speed) {
   const auto rows = static_cast<std::size_t>(std::lround(seconds / kRow));
   for (std::size_t row = 0; row < rows; ++row) {
     recording.drive.t.push_back(kRow * static_cast<double>(row + 1));
-    recording.drive.left.push_back(kRow * speed);
-    recording.drive.right.push_back(kRow * speed);
+    testing::add_travels(recording.drive, kRow * speed, kRow * speed);
   }
   return recording;
 }

@@ -99,7 +99,7 @@ TEST(Steering, LeavesShapesAsTheyWereRead) {
   const std::vector<DrivenRecording> steered_ones =
       steered({recording}, model.effects, model.robot, {});
   const MotionRows& turned = steered_ones.front().drive;
-  ASSERT_NE(turned.left, recording.drive.left);
+  ASSERT_NE(turned.turn, recording.drive.turn);
   const std::vector<Pose> path(turned.rows());
   const RowVariables before = row_variables(recording.drive, model.robot, Pose(), path, 0);
   const RowVariables now = row_variables(turned, model.robot, Pose(), path, 0);
@@ -135,7 +135,7 @@ TEST(OtherDrivesColumns, AreThoseOfDifferences) {
           one = channel == Channel::steer ? one + g : one * (1.0 + g);
         }
         const MotionRows moved = with_wheels(other, robot).drive;
-        const SegmentMotion motion = segment_motion(segment_rows(moved, 5.0, 17.3, robot));
+        const SegmentMotion motion = segment_motion(segment_rows(moved, 5.0, 17.3));
         const Pose& d = motion.displacement;
         return Eigen::Vector3d(d.x, d.y, d.heading);
       };
@@ -146,8 +146,8 @@ TEST(OtherDrivesColumns, AreThoseOfDifferences) {
       for (std::size_t row = 0; row < here.rows(); ++row) {
         patterns.push_back(drive_pattern(channel, 1.0, shown_motion(here, row, robot)));
       }
-      const SegmentWithEffects found = segment_motion(segment_rows(here, 5.0, 17.3, robot),
-                                                      {&patterns}, Eigen::VectorXd::Zero(1));
+      const SegmentWithEffects found =
+          segment_motion(segment_rows(here, 5.0, 17.3), {&patterns}, Eigen::VectorXd::Zero(1));
       EXPECT_LT((found.derivatives.col(0).head<3>() - expected).norm(), 1e-6 * expected.norm())
           << name_of(channel);
     }

@@ -103,8 +103,14 @@ TEST(ReplicatedRecording, TheSeedDecides) {
   const auto first = replicated(world.recordings, world.state, 7);
   const auto second = replicated(world.recordings, world.state, 7);
   const auto other = replicated(world.recordings, world.state, 8);
-  EXPECT_EQ(first[0].drive.left, second[0].drive.left);
-  EXPECT_NE(first[0].drive.left, other[0].drive.left);
+  EXPECT_EQ(first[0].drive.pair.left, second[0].drive.pair.left);
+  EXPECT_EQ(first[0].drive.turn, second[0].drive.turn);
+  EXPECT_NE(first[0].drive.pair.left, other[0].drive.pair.left);
+  for (std::size_t row = 0; row < first[0].drive.rows(); ++row) {  // the wheels' own motion
+    const auto [left, right] = first[0].drive.pair.at(row);
+    ASSERT_NEAR(first[0].drive.forward[row], (left + right) / 2.0, 1e-12);
+    ASSERT_NEAR(first[0].drive.turn[row], (right - left) / Robot().wheelbase, 1e-12);
+  }
 }
 
 TEST(ReplicatedRecording, SaysWhatItCannotDraw) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Where the robot was, by a model.
+#include "driven.hpp"
 #include "estimation/simulated_recordings.hpp"
 #include "fit/fit_state.hpp"
 #include "trussmap/catalogue.hpp"
@@ -42,8 +43,9 @@ TEST(DeadReckonedPoses, AreTheRowsOneAfterTheOther) {
   std::complex<double> place;
   double heading = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const double turn = 1.03 * (drive.right[row] - drive.left[row]) / model.robot.wheelbase;
-    const double way = 0.98 * 0.5 * (drive.right[row] + drive.left[row]);
+    const double turn =
+        1.03 * (drive.pair.right[row] - drive.pair.left[row]) / model.robot.wheelbase;
+    const double way = 0.98 * 0.5 * (drive.pair.right[row] + drive.pair.left[row]);
     const double chord = std::abs(turn) < 1e-9 ? way : way * std::sin(0.5 * turn) / (0.5 * turn);
     place += std::polar(chord, heading + 0.5 * turn);
     heading += turn;
@@ -59,8 +61,9 @@ TEST(DeadReckonedPoses, CovariancesAreThoseOfTheModelsNoise) {
   const SimulatedRecording world = simulated(false, 4);
   DrivenRecording recording = world.recording;
   recording.drive.t.resize(400);
-  recording.drive.left.resize(400);
-  recording.drive.right.resize(400);
+  recording.drive.pair.left.resize(400);
+  recording.drive.pair.right.resize(400);
+  testing::retake(recording.drive);
   for (Covariate& one : recording.drive.covariates) one.values.resize(400);
   recording.sightings.clear();
   const Model& model = world.model;
@@ -72,11 +75,12 @@ TEST(DeadReckonedPoses, CovariancesAreThoseOfTheModelsNoise) {
   for (int run = 0; run < runs; ++run) {
     DrivenRecording astray = recording;
     for (std::size_t row = 0; row < astray.drive.rows(); ++row) {
-      double& left = astray.drive.left[row];
-      double& wheel = astray.drive.right[row];
+      double& left = astray.drive.pair.left[row];
+      double& wheel = astray.drive.pair.right[row];
       left += model.noise.left * std::sqrt(std::abs(left)) * normal(random);
       wheel += model.noise.right * std::sqrt(std::abs(wheel)) * normal(random);
     }
+    testing::retake(astray.drive);
     const Pose end = dead_reckoned_poses(astray, model).back().estimate.pose;
     const Pose& truth = right.back().estimate.pose;
     squares +=

@@ -281,7 +281,7 @@ TEST(SummarisedFit, ASessionThatDoesNotJoinIsRefusedAndTheMapStays) {
   const DrivenRecording surveyed = days_of({false, true, false}, 1, 43).front();
   EXPECT_NE(refusal(fit, surveyed).find("a survey, truth or fixes"), std::string::npos);
   DrivenRecording broken = days[2];
-  broken.drive.left[3] = std::nan("");
+  broken.drive.pair.left[3] = std::nan("");
   EXPECT_THROW(fit.add(broken), std::invalid_argument);
   EXPECT_EQ(fit.sessions(), 2);
   EXPECT_EQ(fit.chi2(), chi2);

@@ -45,8 +45,9 @@ void expect_near_or_absent(double a, double b, double within) {
 /// precision.
 void expect_same(const DrivenRecording& a, const DrivenRecording& b) {
   EXPECT_EQ(a.drive.t, b.drive.t);
-  expect_same_columns(a.drive.left, b.drive.left, 1e-12, "left");
-  expect_same_columns(a.drive.right, b.drive.right, 1e-12, "right");
+  expect_same_columns(a.drive.forward, b.drive.forward, 1e-12, "forward");
+  expect_same_columns(a.drive.turn, b.drive.turn, 1e-12, "turn");
+  expect_same_columns(a.drive.pair.left, b.drive.pair.left, 1e-12, "left");
   expect_same_columns(a.drive.heading, b.drive.heading, 1e-12, "heading");
   ASSERT_EQ(a.sightings.size(), b.sightings.size());
   for (std::size_t k = 0; k < a.sightings.size(); ++k) {

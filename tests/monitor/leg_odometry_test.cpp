@@ -100,7 +100,7 @@ TEST(LegOdometry, EffectsAreDerivativesBesideAGyroToo) {
 
 TEST(LegOdometry, ReadingsAreAveragedAtTheStart) {
   LegOdometry leg({Channel::drift});
-  RowMotion row = row_motion({0.1, 0.1}, 0.0, 1.0, Robot());
+  RowMotion row = row_motion(BodyMotion{0.1, 0.0, 0.0}, 1.0, Robot());
   double turned = 0.0;
   for (int k = 0; k < 10; ++k) {  // readings wrap; the start reads 3.0
     row.body.turn = 0.1;

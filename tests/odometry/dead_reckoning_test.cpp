@@ -4,6 +4,7 @@
 // Dead reckoning over recorded rows: cutting, merging, the compass, landmarks at both ends.
 #include "trussmap/dead_reckoning.hpp"
 
+#include "driven.hpp"
 #include "geometry/index.hpp"
 #include "odometry/merge.hpp"
 
@@ -25,9 +26,9 @@ MotionRows varied_drive(double noise_k) {
   for (const WheelTravel& kind : kinds) {
     for (int k = 0; k < 20; ++k) {
       drive.t.push_back(0.1 * static_cast<double>(drive.t.size() + 1));
-      drive.left.push_back(kind.left + noise_k * std::sqrt(std::abs(kind.left)) * normal(random));
-      drive.right.push_back(kind.right +
-                            noise_k * std::sqrt(std::abs(kind.right)) * normal(random));
+      const double left = kind.left + noise_k * std::sqrt(std::abs(kind.left)) * normal(random);
+      const double right = kind.right + noise_k * std::sqrt(std::abs(kind.right)) * normal(random);
+      testing::add_travels(drive, left, right);
     }
   }
   return drive;
@@ -54,9 +55,10 @@ TEST(DeadReckoning, AnyCutComposesToTheWhole) {
 
 TEST(DeadReckoning, EachKindOfMotionIsOneArc) {
   const MotionRows drive = varied_drive(0.0);
-  const auto arcs = merge_rows(drive, rows_between(drive, 0.0, 8.0), 0.34, {0.003, 0.003});
+  const auto arcs = merge_rows(drive, rows_between(drive, 0.0, 8.0), kRobot, {0.003, 0.003});
   ASSERT_EQ(arcs.size(), 4U);
-  EXPECT_NEAR(arcs[2].travel.right, 2.4, 1e-12);
+  EXPECT_NEAR(arcs[2].motion.forward, 2.0, 1e-12);
+  EXPECT_NEAR(arcs[2].motion.turn, 0.8 / 0.34, 1e-12);
   EXPECT_NEAR(arcs[3].duration, 2.0, 1e-12);
 }
 
@@ -65,7 +67,7 @@ TEST(DeadReckoning, MergedCovarianceIsThatOfTheRows) {
   const MotionRows drive = varied_drive(0.003);
   Motion rows;
   for (const DriveRow& row : rows_between(drive, 0.0, 8.0)) {
-    rows = then(rows, arc_motion(travel_of(drive, row), 0.34, {0.003, 0.003}));
+    rows = then(rows, arc_motion(row.part * drive.pair.at(row.row), 0.34, {0.003, 0.003}));
   }
   const PoseEstimate merged = reckon(drive, 0.0, 8.0);
   EXPECT_NEAR(merged.pose.x, rows.displacement.x, 1e-12);
@@ -88,12 +90,15 @@ TEST(DeadReckoning, TheCompassFilterIsAsSureAsItShouldBe) {
     start.covariance(2, 2) = 0.1 * 0.1;
     start.pose.heading = 0.1 * normal(random);
     for (std::size_t row = 0; row < truth.rows(); ++row) {
-      pose = compose(pose, arc_displacement({truth.left[row], truth.right[row]}, 0.34));
-      drive.left[row] += noise.left * std::sqrt(std::abs(truth.left[row])) * normal(random);
-      drive.right[row] += noise.right * std::sqrt(std::abs(truth.right[row])) * normal(random);
+      pose = compose(pose, arc_displacement(truth.pair.at(row), 0.34));
+      drive.pair.left[row] +=
+          noise.left * std::sqrt(std::abs(truth.pair.left[row])) * normal(random);
+      drive.pair.right[row] +=
+          noise.right * std::sqrt(std::abs(truth.pair.right[row])) * normal(random);
       drive.heading.push_back(row % 5 == 2 ? kAbsent
                                            : pose.heading + noise.compass * normal(random));
     }
+    testing::retake(drive);
     const PoseEstimate end = dead_reckon(start, drive, 0.0, 8.0, kRobot, noise);
     const Eigen::Vector3d error(end.pose.x - pose.x, end.pose.y - pose.y,
                                 wrap_angle(end.pose.heading - pose.heading));

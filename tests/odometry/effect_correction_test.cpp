@@ -44,18 +44,21 @@ TEST(EffectCorrection, RestoresTheRecordOfTheSoundRobot) {
   const DrivenRecording sound = drive_about(false);
   DrivenRecording faulty = sound;
   for (std::size_t row = 0; row < faulty.drive.rows(); ++row) {
-    const double middle = 0.5 * (sound.drive.left[row] + sound.drive.right[row]);
-    const double half = 0.5 * (sound.drive.right[row] - sound.drive.left[row]) * 1.03;
-    faulty.drive.left[row] = (middle - half) / (1.0 - 0.0015);
-    faulty.drive.right[row] = (middle + half) / (1.0 + 0.0015);
+    const double middle = 0.5 * (sound.drive.pair.left[row] + sound.drive.pair.right[row]);
+    const double half = 0.5 * (sound.drive.pair.right[row] - sound.drive.pair.left[row]) * 1.03;
+    faulty.drive.pair.left[row] = (middle - half) / (1.0 - 0.0015);
+    faulty.drive.pair.right[row] = (middle + half) / (1.0 + 0.0015);
   }
+  testing::retake(faulty.drive);
   Model model;
   model.effects.push_back(catalogue_effect("wheel diameter ratio", {0.003}));
   model.effects.push_back(catalogue_effect("wheelbase", {1.0 / 1.03 - 1.0}));
   const std::vector<DrivenRecording> corrected = without_effects({faulty}, model);
   for (std::size_t row = 0; row < sound.drive.rows(); ++row) {
-    EXPECT_NEAR(corrected[0].drive.left[row], sound.drive.left[row], 1e-12);
-    EXPECT_NEAR(corrected[0].drive.right[row], sound.drive.right[row], 1e-12);
+    EXPECT_NEAR(corrected[0].drive.pair.left[row], sound.drive.pair.left[row], 1e-12);
+    EXPECT_NEAR(corrected[0].drive.pair.right[row], sound.drive.pair.right[row], 1e-12);
+    EXPECT_NEAR(corrected[0].drive.forward[row], sound.drive.forward[row], 1e-12);
+    EXPECT_NEAR(corrected[0].drive.turn[row], sound.drive.turn[row], 1e-12);
   }
   EXPECT_GT(error_of({faulty}), 1.5 * error_of({sound}));
 }

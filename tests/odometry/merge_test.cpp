@@ -4,6 +4,7 @@
 // Rows cut to a span of time, and rows merged into arcs.
 #include "odometry/merge.hpp"
 
+#include "driven.hpp"
 #include "geometry/index.hpp"
 
 #include <cmath>
@@ -30,21 +31,26 @@ MotionRows drive_of(const std::vector<Stretch>& training_segments) {
     for (int k = 0; k < stretch.rows; ++k) {
       t += drive.rows() < 2 ? 0.1 : 0.05 + 0.01 * static_cast<double>(drive.rows() % 7);
       drive.t.push_back(t);
-      drive.left.push_back(stretch.travel.left);
-      drive.right.push_back(stretch.travel.right);
+      testing::add_travels(drive, stretch.travel.left, stretch.travel.right, kWheelbase);
     }
   }
   return drive;
 }
 
+/// Of the wheels that show the motion.
+WheelTravel travel_of(const BodyMotion& motion) {
+  const double apart = 0.5 * kWheelbase * motion.turn;
+  return {motion.forward - apart, motion.forward + apart};
+}
+
 std::vector<DriveArc> arcs_of(const MotionRows& drive) {
-  return merge_rows(drive, rows_between(drive, 0.0, drive.t.back()), kWheelbase, kNoise);
+  return merge_rows(drive, rows_between(drive, 0.0, drive.t.back()), Robot{kWheelbase}, kNoise);
 }
 
 Motion row_by_row(const MotionRows& drive, const std::vector<DriveRow>& rows) {
   Motion motion;
   for (const DriveRow& row : rows) {
-    motion = then(motion, arc_motion(travel_of(drive, row), kWheelbase, kNoise));
+    motion = then(motion, arc_motion(travel_of(motion_of(drive, row)), kWheelbase, kNoise));
   }
   return motion;
 }
@@ -52,7 +58,7 @@ Motion row_by_row(const MotionRows& drive, const std::vector<DriveRow>& rows) {
 Motion arc_by_arc(const std::vector<DriveArc>& arcs) {
   Motion motion;
   for (const DriveArc& arc : arcs) {
-    motion = then(motion, arc_motion(arc.travel, kWheelbase, kNoise));
+    motion = then(motion, arc_motion(travel_of(arc.motion), kWheelbase, kNoise));
   }
   return motion;
 }
@@ -67,8 +73,8 @@ TEST(RowsBetween, PartsOfARowAddUpToIt) {
     for (const DriveRow& row : rows_between(drive, from, to)) {
       EXPECT_GE(row.part, 0.0);
       EXPECT_LE(row.part, 1.0 + 1e-12);
-      sum.left += travel_of(drive, row).left;
-      sum.right += travel_of(drive, row).right;
+      sum.left += travel_of(motion_of(drive, row)).left;
+      sum.right += travel_of(motion_of(drive, row)).right;
       duration += row.duration;
     }
     EXPECT_NEAR(duration, to - from, 1e-12);
@@ -138,7 +144,8 @@ TEST(MergeRows, KindsOfMotionStayApart) {
   const std::vector<DriveArc> arcs = arcs_of(drive);
   ASSERT_EQ(arcs.size(), 7U);
   const double lefts[] = {0.0, -0.1, 0.1, 0.5, -0.5, 0.5, 0.25};
-  for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(arcs[k].travel.left, lefts[k], 1e-14) << k;
+  for (std::size_t k = 0; k < 7; ++k)
+    EXPECT_NEAR(travel_of(arcs[k].motion).left, lefts[k], 1e-14) << k;
 }
 
 TEST(MergeRows, LoseNeitherTravelNorTime) {
@@ -147,13 +154,14 @@ TEST(MergeRows, LoseNeitherTravelNorTime) {
   MotionRows drive = drive_of({{200, {0.0, 0.0}}});
   WheelTravel sum;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    sum.left += drive.left[row] = 0.05 * normal(random);
-    sum.right += drive.right[row] = 0.05 * normal(random);
+    sum.left += drive.pair.left[row] = 0.05 * normal(random);
+    sum.right += drive.pair.right[row] = 0.05 * normal(random);
   }
+  testing::retake(drive, kWheelbase);
   double duration = 0.0;
   for (const DriveArc& arc : arcs_of(drive)) {
-    sum.left -= arc.travel.left;
-    sum.right -= arc.travel.right;
+    sum.left -= travel_of(arc.motion).left;
+    sum.right -= travel_of(arc.motion).right;
     duration += arc.duration;
   }
   EXPECT_NEAR(sum.left, 0.0, 1e-13);
@@ -183,11 +191,14 @@ TEST(MergeRows, OfANoisyDriveGiveNearlyTheCovarianceOfTheRows) {
       {{40, {-0.02, 0.02}}, {400, {0.05, 0.05}}, {30, {0.02, -0.02}}, {300, {0.05, 0.05}}});
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const double bend = 1.0 + 0.04 * std::sin(0.02 * static_cast<double>(row));
-    drive.left[row] *= 1.0 / bend;
-    drive.right[row] *= bend;
-    drive.left[row] += kNoise.left * std::sqrt(std::abs(drive.left[row])) * normal(random);
-    drive.right[row] += kNoise.right * std::sqrt(std::abs(drive.right[row])) * normal(random);
+    drive.pair.left[row] *= 1.0 / bend;
+    drive.pair.right[row] *= bend;
+    drive.pair.left[row] +=
+        kNoise.left * std::sqrt(std::abs(drive.pair.left[row])) * normal(random);
+    drive.pair.right[row] +=
+        kNoise.right * std::sqrt(std::abs(drive.pair.right[row])) * normal(random);
   }
+  testing::retake(drive, kWheelbase);
   const std::vector<DriveArc> arcs = arcs_of(drive);
   EXPECT_LE(arcs.size(), drive.rows() / 20);
   const Matrix3 rows = row_by_row(drive, rows_between(drive, 0.0, drive.t.back())).covariance;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "odometry/wheels_and_gyro.hpp"
 
+#include "drive/body_motion.hpp"
+#include "driven.hpp"
 #include "odometry/row_reckoner.hpp"
 #include "trussmap/dead_reckoning.hpp"
 
@@ -34,7 +36,8 @@ TEST(WheelsAndGyro, AreTakenTogetherAsLeastSquaresHasIt) {
     const WheelTravel wheels{0.1 * unit(random), 0.1 * unit(random)};
     const double duration = 0.3;
     const double rate = unit(random);
-    const GyroShare share = gyro_share(wheels, rate, duration, robot, noise);
+    const GyroShare share = gyro_share(body_motion(wheels, 0.4), rate, duration, noise,
+                                       arc_noise(wheels, duration, robot, noise));
 
     // d(path, turn)/d(left, right), and the two wheels' own variances.
     Matrix2 T;
@@ -52,9 +55,8 @@ TEST(WheelsAndGyro, AreTakenTogetherAsLeastSquaresHasIt) {
     const Matrix2 expected_covariance = (A.transpose() * C.inverse() * A).inverse();
     const Vector2 expected = expected_covariance * A.transpose() * C.inverse() * y;
 
-    const WheelTravel both = together(share, robot);
-    const Vector2 found = T * Vector2(both.left, both.right);
-    EXPECT_LT((found - expected).norm(), 1e-12);
+    const BodyMotion both = together(share);
+    EXPECT_LT((Vector2(both.forward, both.turn) - expected).norm(), 1e-12);
     const ArcNoise left =
         noise_together(share, arc_noise(wheels, duration, robot, noise), duration, noise);
     const double size = expected_covariance.norm();
@@ -67,16 +69,18 @@ TEST(WheelsAndGyro, AreTakenTogetherAsLeastSquaresHasIt) {
 MotionRows a_drive() {
   MotionRows drive;
   drive.t = {0.1, 0.2, 0.3};
-  drive.left = {0.05, 0.0, -0.02};
-  drive.right = {0.06, 0.0, 0.03};
+  testing::add_travels(drive, 0.05, 0.06, 0.3);
+  testing::add_travels(drive, 0.0, 0.0, 0.3);
+  testing::add_travels(drive, -0.02, 0.03, 0.3);
   drive.yaw_rate = {0.2, 0.01, kAbsent};
   return drive;
 }
 
 TEST(WheelsAndGyro, ARobotWhoseWheelsStandStillStandsWhateverTheGyroSays) {
   const MotionRows drive = with_gyro(a_drive(), Robot{0.3}, noise_of(0.003, 0.003, 0.001));
-  EXPECT_EQ(drive.left[1], 0.0);
-  EXPECT_EQ(drive.right[1], 0.0);
+  EXPECT_EQ(drive.forward[1], 0.0);
+  EXPECT_EQ(drive.turn[1], 0.0);
+  EXPECT_TRUE(drive.rests(1));
   EXPECT_NEAR(drive.gyro[1].excess, 0.001, 1e-15);
   EXPECT_NEAR(excess_variance(drive, 1, 1.0, 0.1, Robot{0.3}, noise_of(0.003, 0.003, 0.001)),
               1e-6 * 0.1, 1e-18);
@@ -86,22 +90,25 @@ TEST(WheelsAndGyro, ARowWithoutAReadingIsTheWheelsAlone) {
   const Noise noise = noise_of(0.003, 0.003, 0.001);
   const Robot robot{0.3};
   const MotionRows drive = with_gyro(a_drive(), robot, noise);
-  EXPECT_EQ(drive.left[2], -0.02);
-  EXPECT_EQ(drive.right[2], 0.03);
+  EXPECT_EQ(drive.forward[2], a_drive().forward[2]);
+  EXPECT_EQ(drive.turn[2], a_drive().turn[2]);
   EXPECT_TRUE(std::isinf(excess_variance(drive, 2, 1.0, 0.1, robot, noise)));
-  EXPECT_EQ(row_covariance(drive, 2, 1.0, 0.1, robot, noise),
-            arc_covariance({-0.02, 0.03}, 0.1, robot, noise));
+  const Matrix3 alone = arc_covariance({-0.02, 0.03}, 0.1, robot, noise);
+  EXPECT_LT((row_covariance(drive, 2, 1.0, 0.1, robot, noise) - alone).norm(),
+            1e-14 * alone.norm());
 }
 
 TEST(WheelsAndGyro, AreTakenTogetherOnce) {
   const Noise noise = noise_of(0.003, 0.003, 0.001);
   const MotionRows once = with_gyro(a_drive(), Robot{0.3}, noise);
   const MotionRows twice = with_gyro(once, Robot{0.3}, noise);
-  EXPECT_EQ(once.left, twice.left);
-  EXPECT_EQ(once.wheel_left(0), 0.05);
+  EXPECT_EQ(once.turn, twice.turn);
+  EXPECT_EQ(once.wheel_motion(0).turn, a_drive().turn[0]);
+  EXPECT_NE(once.turn[0], a_drive().turn[0]);
+  EXPECT_EQ(once.pair.left, a_drive().pair.left);
   MotionRows without = a_drive();
   without.yaw_rate.clear();
-  EXPECT_EQ(with_gyro(without, Robot{0.3}, noise).left, without.left);
+  EXPECT_EQ(with_gyro(without, Robot{0.3}, noise).turn, without.turn);
   EXPECT_TRUE(with_gyro(without, Robot{0.3}, noise).gyro.empty());
 }
 

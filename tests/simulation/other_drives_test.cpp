@@ -127,9 +127,7 @@ TEST_P(SimulatedWheels, MisreadALegAsAWhole) {
   const MotionRows exact = with_wheels(simulate(robot).drive.recording, robot).drive;
   const World world = simulate(robot, kNoiseFree, rough);
   const MotionRows misread = with_wheels(world.drive.recording, robot).drive;
-  const auto path = [](const MotionRows& of, std::size_t row) {
-    return 0.5 * (of.left[row] + of.right[row]);
-  };
+  const auto path = [](const MotionRows& of, std::size_t row) { return of.forward[row]; };
   const TrueStop& a = world.drive.motion.stops[3];
   const TrueStop& b = world.drive.motion.stops[4];
   double share = 0.0;

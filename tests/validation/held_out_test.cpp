@@ -161,12 +161,13 @@ DrivenRecording spoiled(DrivenRecording recording, const std::vector<LegSpan>& l
   for (std::size_t row = 0; row < recording.drive.rows(); ++row) {
     const double t = recording.drive.t[row];
     if (t <= from + 1e-9 || t > to - late + 1e-9) continue;
-    recording.drive.left[row] *= 1.03;
-    recording.drive.right[row] *= 0.99;
+    recording.drive.pair.left[row] *= 1.03;
+    recording.drive.pair.right[row] *= 0.99;
     if (recording.drive.has_compass()) {
       recording.drive.heading[row] = std::remainder(recording.drive.heading[row] + 0.1, 2.0 * M_PI);
     }
   }
+  testing::retake(recording.drive, testing::kInvertedWheelbase);
   for (Sighting& sighting : recording.sightings) {
     if (sighting.t <= from + 1e-9 || sighting.t >= to - 1e-9) continue;
     if (!sighting.standing()) sighting.range += 0.2;
@@ -345,7 +346,7 @@ TEST(HeldOut, LegsBetweenTruthRowsArePredictedToo) {
     for (std::size_t row = 0; row < recording.drive.rows(); ++row) {
       const double t = recording.drive.t[row];
       if (t <= leg.time.from + 1e-9 || t > leg.time.to + 1e-9) continue;
-      driven += 0.5 * std::abs(recording.drive.left[row] + recording.drive.right[row]);
+      driven += std::abs(recording.drive.forward[row]);
     }
     EXPECT_GE(driven, 1.0 - 1e-9);
     EXPECT_LT(driven, 1.6);  // rows of 9 cm, three apart, of which every 25 cm is used

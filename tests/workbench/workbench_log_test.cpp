@@ -90,7 +90,7 @@ TEST(WorkbenchLog, OfOtherRecordingsIsRefused) {
   const ScratchFolder scratch;
   std::vector<DrivenRecording> recordings = riddle();
   const auto file = scratch.write("steps.json", format_workbench_log(some_log(), recordings));
-  recordings.front().drive.left.front() += 1e-9;
+  recordings.front().drive.pair.left.front() += 1e-9;
   EXPECT_NE(fault_of(file, recordings).find("other recordings"), std::string::npos);
 }
 
