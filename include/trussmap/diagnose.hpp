@@ -189,7 +189,7 @@ struct EffectChance {
 /// 400 to 1. Every candidate, pair and triple was weighed, larger sets begun with the best ones
 /// (criticism/subset_search.hpp): sizes equally likely on a logarithmic scale, numbers of effects
 /// by Poisson's law of mean 1, look-alikes sharing one belief. What only adds to a likelier set
-/// counts as that one. Empty where nothing is missing.
+/// counts as that one. Empty where nothing is missing, or even with it chi^2 is above 3 dof.
 struct Explanations {
   std::vector<EffectSet> sets;        ///< best first
   std::vector<EffectChance> effects;  ///< likeliest first, from 0.01 on

@@ -389,8 +389,11 @@ void allow_what_is_likely(Diagnosis& diagnosis) {
 
 void explain(Diagnosis& diagnosis, const SearchedEffects& searched, const ModelFit& fit,
              const std::optional<ModelFit>& with) {
+  constexpr double kFirstOrder = 3.0;  // chi^2/dof
   const std::vector<NamedEffect> named = named_in(diagnosis, searched);
   if (named.empty()) return;
+  // Beside errors far larger than noise no tests to first order weigh what is smaller.
+  if (with && with->dof > 0 && with->chi2 > kFirstOrder * with->dof) return;
   std::vector<Effect> added;
   for (std::size_t k = fit.effects.size(); with && k < with->effects.size(); ++k) {
     added.push_back(with->effects[k].effect);

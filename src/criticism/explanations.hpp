@@ -39,7 +39,9 @@ struct NamedEffect {
                                            const SetGround& ground);
 
 /// Gives a diagnosis its explanations, about the fit with what is missing where there is one: rows
-/// are linear there. What may be part of an explanation is not called absent. `fit`: without.
+/// are linear there; none where even with that chi^2 is thrice its degrees of freedom, for then the
+/// larger effects come first. What may be part of an explanation is not called absent. `fit`:
+/// without.
 void explain(Diagnosis& diagnosis, const SearchedEffects& searched, const ModelFit& fit,
              const std::optional<ModelFit>& with);
 

@@ -81,7 +81,8 @@ std::string sets_text(const Diagnosis& diagnosis) {
       text += fmt::format("  {:>6}  {} more\n", likelihood_text(rest), all.sets.size() - kMostSets);
     }
   }
-  return text + fmt::format("  part of the explanation: {}\n", chances_in_words(all));
+  return text +
+         fmt::format("  probability of being part of the explanation: {}\n", chances_in_words(all));
 }
 
 PageTable sets_table(const Diagnosis& diagnosis) {
