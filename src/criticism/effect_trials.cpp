@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/effect_trials.hpp"
 
+#include "criticism/effect_strength.hpp"
 #include "criticism/refits.hpp"
 #include "trussmap/error.hpp"
 #include "validation/arrival_rise.hpp"

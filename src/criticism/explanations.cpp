@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/explanations.hpp"
 
+#include "criticism/driven_variables.hpp"
 #include "criticism/formulas.hpp"
 #include "criticism/look_alikes.hpp"
 

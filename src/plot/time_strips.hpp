@@ -5,7 +5,7 @@
 #pragma once
 
 #include "plot/chart.hpp"
-#include "trussmap/recording.hpp"
+#include "trussmap/robot.hpp"
 
 #include <vector>
 

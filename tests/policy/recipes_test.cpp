@@ -43,6 +43,7 @@ const std::map<std::string, Names> kNames = {
     {"BZip2", {"libbz2-dev", "bzip2", {"bzip2"}}},
     {"Lz4", {"liblz4-dev", "lz4", {"lz4-c"}}},
     {"zstd", {"libzstd-dev", "zstd", {"zstd"}}},
+    {"ZLIB", {"zlib1g-dev", "zlib", {"zlib"}}},
     {"yaml-cpp", {"libyaml-cpp-dev", "yaml-cpp", {"yaml-cpp"}}}};
 
 std::set<std::string> all_matches(const std::string& text, const std::string& pattern) {
