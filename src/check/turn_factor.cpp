@@ -196,6 +196,7 @@ int turn_sign(const MotionRows& drive, const Track& track, const PlacesSeen& pla
   const std::vector<CornerPiece> pieces = corner_pieces(apart, track, places.noise);
   if (pieces.size() < kFewestPieces) return 0;
   std::vector<Course> courses;
+  courses.reserve(pieces.size());
   for (const CornerPiece& piece : pieces) {
     courses.push_back(course_of(drive, apart, piece));
   }

@@ -156,11 +156,13 @@ class Explainer {
     const double best = sets.empty() ? 0.0 : sets.front().log_evidence;
     for (const CandidateSet& set : sets) {
       std::vector<std::pair<std::size_t, int>> order;
+      order.reserve(static_cast<std::size_t>(set.size));
       for (int m = 0; m < set.size; ++m) {
         order.emplace_back(class_of(set.members[idx(m)]), set.members[idx(m)]);
       }
       std::sort(order.begin(), order.end());
       std::vector<std::size_t> classes;
+      classes.reserve(order.size());
       for (const auto& one : order) classes.push_back(one.first);
       SetOfClasses& sum = by_classes[classes];
       if (sum.weight == 0.0) {  // the best of its kind comes first
@@ -416,6 +418,7 @@ void put_before(Explanations& explanations, const std::vector<ExplainingEffect>&
     one.effects.insert(one.effects.begin(), certain.begin(), certain.end());
   }
   std::vector<EffectChance> chances;
+  chances.reserve(certain.size());
   for (const ExplainingEffect& one : certain) chances.push_back({one.effect, one.otherwise, 1.0});
   explanations.effects.insert(explanations.effects.begin(), chances.begin(), chances.end());
 }

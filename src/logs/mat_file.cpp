@@ -94,17 +94,16 @@ class Variables {
 
   [[nodiscard]] MatFile finish() {
     MatFile result;
+    std::map<std::string, int> lengths;  // of a structure's tables
+    for (const auto& one : tables_) lengths[one.first.first] += one.second.size() >= 2 ? 1 : 0;
     for (auto& [key, columns] : tables_) {
       if (columns.size() < 2) {
         pass_over("variables of a length of their own", columns.size());
         continue;
       }
       const auto& [structure, rows] = key;
-      const auto same = std::count_if(tables_.begin(), tables_.end(), [&key](const auto& one) {
-        return one.first.first == key.first && one.second.size() >= 2;
-      });
       std::string name = structure;
-      if (name.empty() || same > 1) {
+      if (name.empty() || lengths.at(structure) > 1) {
         name += (name.empty() ? "" : " ") + std::to_string(rows) + " rows";
       }
       result.tables.push_back({std::move(name), std::move(columns)});
