@@ -29,6 +29,7 @@ double p_of_set(double gain, int dof, int tried, int size) {
 
 std::vector<std::size_t> tested_in(const CandidateSet& set, const CandidateGram& gram) {
   std::vector<std::size_t> places;
+  places.reserve(static_cast<std::size_t>(set.size));
   for (int m = 0; m < set.size; ++m) {
     places.push_back(gram.blocks[idx(set.members[idx(m)])].candidate);
   }

@@ -14,7 +14,7 @@ class Hash {
  public:
   void take(std::string_view text) {
     hash_.take(text);
-    hash_.take(std::string_view("", 1));  // so that texts do not run together
+    hash_.take(std::string_view("\0", 1));  // so that texts do not run together
   }
   void take(const std::vector<double>& numbers) {
     for (const double number : numbers) take(shortest_text(number));
