@@ -106,7 +106,7 @@ WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings
   if (!rows.empty()) {
     try {
       WheelCalibration rest = calibrated_by_all(without_rows(recordings, rows), model, without);
-      if (!by_all || explains_more(rest, *by_all)) {
+      if (explains_more(rest, by_all)) {
         for (const LeftOutRow& one : rows) rest.left_out.push_back(one.text);
         return rest;
       }

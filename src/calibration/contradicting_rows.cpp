@@ -14,6 +14,8 @@
 namespace trussmap {
 namespace {
 
+constexpr double kScatter = 4.0;  // chi^2/dof: noise stated half as large, and more
+
 double scatter_of(const WheelCalibration& found) {
   return found.chi2 / std::max(1, found.dof);
 }
@@ -38,15 +40,15 @@ std::set<std::size_t> rows_of(const std::vector<LeftOutRow>& all, int session,
 }  // namespace
 
 bool is_contradicted(const WheelCalibration& found) {
-  constexpr double kScatter = 4.0;  // chi^2/dof: noise stated half as large, and more
   constexpr double kChance = 1e-6;
   return !found.settled ||
          (scatter_of(found) > kScatter && chi2_p_value(found.chi2, found.dof) < kChance);
 }
 
-bool explains_more(const WheelCalibration& rest, const WheelCalibration& by_all) {
-  constexpr double kShare = 0.5;  // of chi^2/dof
-  return rest.settled && (!by_all.settled || scatter_of(rest) < kShare * scatter_of(by_all));
+bool explains_more(const WheelCalibration& rest, const std::optional<WheelCalibration>& by_all) {
+  constexpr double kShare = 0.5;                                   // of chi^2/dof
+  if (!rest.settled || scatter_of(rest) > kScatter) return false;  // the model is wrong
+  return !by_all || !by_all->settled || scatter_of(rest) < kShare * scatter_of(*by_all);
 }
 
 std::vector<LeftOutRow> contradicting_rows(const std::vector<DrivenRecording>& recordings,

@@ -16,8 +16,9 @@ namespace trussmap {
 /// Whether its errors are larger than noise makes them.
 [[nodiscard]] bool is_contradicted(const WheelCalibration& found);
 
-/// Whether what is left fits far better.
-[[nodiscard]] bool explains_more(const WheelCalibration& rest, const WheelCalibration& by_all);
+/// Whether what is left fits, and far better than all (none: that led nowhere).
+[[nodiscard]] bool explains_more(const WheelCalibration& rest,
+                                 const std::optional<WheelCalibration>& by_all);
 
 /// What a calibration with a gate (options.gate) leaves out, from the constants of `by_all` or of
 /// likely starts: of these as that leaves the least sum of squares, each row that is out counted as
