@@ -5,6 +5,7 @@
 #pragma once
 
 #include "trussmap/recording.hpp"
+#include "trussmap/simulated_recording.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,18 @@
 #include <vector>
 
 namespace trussmap::testing {
+
+/// Two tours by a robot with a gyro that sees a mesh of landmarks by range and bearing.
+inline SimulationSettings seen_hall(const std::string& mesh, std::uint64_t seed) {
+  SimulationSettings settings;
+  settings.mesh = mesh;
+  settings.tours = 2;
+  settings.seed = seed;
+  settings.no_compass = true;
+  settings.gyro = true;
+  settings.range_sensor = true;
+  return settings;
+}
 
 /// Gives such a share of the sightings the name of another of the landmarks that are seen, at
 /// random. Their rows.

@@ -69,6 +69,25 @@ bool has_doubtful_rows(const DrivenRecording& one) {
   return !one.sightings.empty() || !one.fixes.empty() || !one.loops.empty();
 }
 
+/// By all but the few rows that the others contradict; none where there are no such rows, or the
+/// rest does not fit far better. `options` have a gate.
+std::optional<WheelCalibration> calibrated_by_the_rest(
+    const std::vector<DrivenRecording>& recordings, const Model& model,
+    const WheelCalibrationOptions& options, const std::optional<WheelCalibration>& by_all) {
+  const std::vector<LeftOutRow> rows = contradicting_rows(recordings, model, options, by_all);
+  if (rows.empty()) return std::nullopt;
+  WheelCalibrationOptions without = options;
+  without.gate = std::nullopt;
+  try {
+    WheelCalibration rest = calibrated_by_all(without_rows(recordings, rows), model, without);
+    if (!explains_more(rest, by_all)) return std::nullopt;
+    for (const LeftOutRow& one : rows) rest.left_out.push_back(one.text);
+    return rest;
+  } catch (const SolveError&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 WheelCalibrationOptions calibration_options(const CalibrationOptions& options) {
@@ -92,29 +111,21 @@ WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings
   const Model model = with_places_in_robot(given);
   WheelCalibrationOptions without = options;
   without.gate = std::nullopt;
-  const bool gated = options.gate && std::ranges::any_of(recordings, has_doubtful_rows);
+  if (!options.gate || std::ranges::none_of(recordings, has_doubtful_rows)) {
+    return calibrated_by_all(recordings, model, without);
+  }
   std::optional<WheelCalibration> by_all;
   std::exception_ptr why;
   try {
     by_all = calibrated_by_all(recordings, model, without);
-    if (!gated || !is_contradicted(*by_all)) return *std::move(by_all);
+    if (!is_contradicted(*by_all)) return *std::move(by_all);
   } catch (const SolveError&) {
-    if (!gated) throw;
     why = std::current_exception();
   }
-  const std::vector<LeftOutRow> rows = contradicting_rows(recordings, model, options, by_all);
-  if (!rows.empty()) {
-    try {
-      WheelCalibration rest = calibrated_by_all(without_rows(recordings, rows), model, without);
-      if (explains_more(rest, by_all)) {
-        for (const LeftOutRow& one : rows) rest.left_out.push_back(one.text);
-        return rest;
-      }
-    } catch (const SolveError&) {
-      if (!why) return *std::move(by_all);
-    }
+  if (auto rest = calibrated_by_the_rest(recordings, model, options, by_all)) {
+    return *std::move(rest);
   }
-  if (why) std::rethrow_exception(why);
+  if (!by_all) std::rethrow_exception(why);
   return *std::move(by_all);
 }
 

@@ -16,10 +16,6 @@ namespace {
 
 constexpr double kScatter = 4.0;  // chi^2/dof: noise stated half as large, and more
 
-double scatter_of(const WheelCalibration& found) {
-  return found.chi2 / std::max(1, found.dof);
-}
-
 template <typename Row>
 void remove(std::vector<Row>& stream, const std::set<std::size_t>& rows) {
   for (auto at = rows.rbegin(); at != rows.rend(); ++at) {

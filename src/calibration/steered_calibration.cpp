@@ -39,10 +39,6 @@ bool led_nearby(const WheelCalibration& found, double start, bool stated) {
   return stated;
 }
 
-double scatter_of(const WheelCalibration& one) {
-  return one.chi2 / std::max(1, one.dof);
-}
-
 /// The best of several starts.
 class Starts {
  public:

@@ -8,12 +8,18 @@
 #include "estimation/recording_problem.hpp"
 #include "trussmap/calibrate.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace trussmap {
+
+/// chi^2/dof.
+[[nodiscard]] inline double scatter_of(const WheelCalibration& found) {
+  return found.chi2 / std::max(1, found.dof);
+}
 
 struct WheelCalibrationOptions {
   ProblemOptions problem;

@@ -326,15 +326,12 @@ TurnAgreement check_recording(Checked& checked, MotionRows& drive) {
   for (const char* column : {"left", "right", "t", "range", "bearing"}) {
     if (checked.wrong.contains(column)) return turns;
   }
-  const auto check_labels = [&checked, by_truth](const Track& by) {
-    check_two_places(checked, by, by_truth);
-    check_wrong_labels(checked, by, by_truth);
-  };
   if (by_truth || !by_compass) {
-    check_labels(track);
+    check_labels(checked, track, by_truth);
   } else {
-    check_labels(
-        Track(recording.drive, WheelMistake::none, checked.wheelbase, Heading::of_compass));
+    check_labels(checked,
+                 Track(recording.drive, WheelMistake::none, checked.wheelbase, Heading::of_compass),
+                 false);
   }
   return turns;
 }

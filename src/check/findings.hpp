@@ -94,10 +94,9 @@ void check_constant_columns(Checked& checked, const Track& track);
 void check_no_travel(Checked& checked, const Track& track);
 /// Wheels that travel, but never turn it.
 void check_no_turning(Checked& checked, const Track& track);
-/// One name at two places. Places are the truth's where that is trusted, else the track's.
-void check_two_places(Checked& checked, const Track& track, bool by_truth);
-/// Sightings under another landmark's name, likewise.
-void check_wrong_labels(Checked& checked, const Track& track, bool by_truth);
+/// One name at two places, and sightings under another landmark's name. Places are the truth's
+/// where that is trusted, else the track's.
+void check_labels(Checked& checked, const Track& track, bool by_truth);
 
 /// Ranges' and bearings' units by themselves, before anything is asked of them.
 void check_bearing_unit(Checked& checked);

@@ -77,22 +77,7 @@ Split split_of(const std::vector<Visit>& visits, const UsualMiss& usual) {
   return split;
 }
 
-}  // namespace
-
-void check_names(Checked& checked) {
-  std::set<std::string_view> sighted;
-  for (const Sighting& one : checked.recording.sightings) sighted.insert(one.landmark);
-  check_blanks(checked, "sightings.csv", sighted);
-  std::set<std::string_view> surveyed;
-  for (const SurveyPoint& one : checked.recording.survey) surveyed.insert(one.landmark);
-  check_blanks(checked, "survey.csv", surveyed);
-}
-
-void check_two_places(Checked& checked, const Track& track, bool by_truth) {
-  constexpr double kPass = 1.0;  // m
-  const Visits visits = visits_of(checked, track, by_truth, kPass);
-  const UsualMiss usual = usual_miss(visits, by_truth);
-  if (!usual.known) return;
+void check_two_places(Checked& checked, const Visits& visits, const UsualMiss& usual) {
   std::map<std::string_view, Split> splits;
   for (const auto& [name, all] : visits) {
     const Split split = split_of(all, usual);
@@ -107,6 +92,26 @@ void check_two_places(Checked& checked, const Track& track, bool by_truth) {
                split.second, " at another, ", figure(split.apart, "m"), " from it"),
         "look for a second landmark of that name, or one that was moved");
   }
+}
+
+}  // namespace
+
+void check_names(Checked& checked) {
+  std::set<std::string_view> sighted;
+  for (const Sighting& one : checked.recording.sightings) sighted.insert(one.landmark);
+  check_blanks(checked, "sightings.csv", sighted);
+  std::set<std::string_view> surveyed;
+  for (const SurveyPoint& one : checked.recording.survey) surveyed.insert(one.landmark);
+  check_blanks(checked, "survey.csv", surveyed);
+}
+
+void check_labels(Checked& checked, const Track& track, bool by_truth) {
+  constexpr double kPass = 1.0;  // m
+  const Visits visits = visits_of(checked, track, by_truth, kPass);
+  const UsualMiss usual = usual_miss(visits, by_truth);
+  if (!usual.known) return;
+  check_two_places(checked, visits, usual);
+  check_wrong_labels(checked, visits_of(checked, track, by_truth, 0.0), usual);
 }
 
 }  // namespace trussmap

@@ -39,6 +39,9 @@ struct UsualMiss {
 /// Several times the medians, and no less than robots are often off.
 [[nodiscard]] UsualMiss usual_miss(const Visits& visits, bool by_truth);
 
+/// Single sightings under another landmark's name; of all visits, none taken together.
+void check_wrong_labels(Checked& checked, const Visits& visits, const UsualMiss& usual);
+
 /// What is beyond it so far that it is another place.
 inline constexpr double kOtherPlace = 1.5;  // times what is allowed
 

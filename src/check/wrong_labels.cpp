@@ -87,12 +87,8 @@ std::vector<WrongLabel> wrong_labels(const Visits& visits, const UsualMiss& usua
 
 }  // namespace
 
-void check_wrong_labels(Checked& checked, const Track& track, bool by_truth) {
-  constexpr double kPass = 1.0;  // m
+void check_wrong_labels(Checked& checked, const Visits& visits, const UsualMiss& usual) {
   constexpr std::size_t kNamed = 3;
-  const UsualMiss usual = usual_miss(visits_of(checked, track, by_truth, kPass), by_truth);
-  if (!usual.known) return;
-  const Visits visits = visits_of(checked, track, by_truth, 0.0);
   const std::vector<WrongLabel> wrong = wrong_labels(visits, usual);
   std::size_t all = 0;
   for (const auto& [name, own] : visits) all += own.size();

@@ -70,10 +70,8 @@ double dispersion_of_set(const std::vector<std::size_t>& places, const std::vect
   joint.p_value = 0.0;
   joint.projected.resize(ground.tests.residuals().size(), 0);
   for (const std::size_t k : places) {
-    const Score own = ground.tests.test({tested[k].candidate.effect}).front();
-    const Eigen::Index had = joint.projected.cols();
-    joint.projected.conservativeResize(Eigen::NoChange, had + own.projected.cols());
-    joint.projected.rightCols(own.projected.cols()) = own.projected;
+    append_columns(joint.projected,
+                   ground.tests.test({tested[k].candidate.effect}).front().projected);
   }
   const Eigen::VectorXd estimate = -least_squares(joint.projected, ground.tests.residuals());
   joint.coefficients.assign(estimate.begin(), estimate.end());

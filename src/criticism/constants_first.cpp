@@ -25,7 +25,8 @@ void put_constants_first(const std::vector<DrivenRecording>& recordings, const M
     if (!(noise == fit.model.noise)) given = refit_under(recordings, fit, noise);
     result.under = std::make_shared<const FitWithNoise>(FitWithNoise{given, result.under->noise});
   }
-  if (result.verdict != Diagnosis::Verdict::missing) {
+  const bool others = result.verdict == Diagnosis::Verdict::missing;
+  if (!others) {
     result.with_missing = metrics_of(result.held_out);
   }
   result.held_out = predict_held_out(recordings, given, options.legs);
@@ -65,9 +66,9 @@ void put_constants_first(const std::vector<DrivenRecording>& recordings, const M
       if (!rival.told_apart()) certain.back().otherwise.push_back(rival.effect.name);
     }
   }
-  if (result.explanations.sets.empty())
-    result.explanations.sets.push_back({{}, 0.0, 1.0, 0.0, true});
-  put_before(result.explanations, certain);
+  // What else is missing may be too large for sets to be told.
+  if (!others) result.explanations.sets.push_back({{}, 0.0, 1.0, 0.0, true});
+  if (!result.explanations.sets.empty()) put_before(result.explanations, certain);
   result.findings.insert(result.findings.begin(), first.begin(), first.end());
   run.candidates.insert(run.candidates.begin(), candidates.begin(), candidates.end());
   run.gross = std::move(constants);

@@ -33,8 +33,7 @@ namespace {
 constexpr double kPractical = 0.05;    // rise of the arrival error
 constexpr double kNegligible = 0.002;  // the same
 constexpr double kFitsAnyway = 0.05;   // p
-constexpr int kMostExchanges = 2;
-constexpr double kExplains = 1e-6;  // p, below which an adjustment warns of chi^2
+constexpr double kExplains = 1e-6;     // p, below which an adjustment warns of chi^2
 
 /// Reports what a search has found.
 class Diagnostician {
@@ -76,6 +75,7 @@ class Diagnostician {
  private:
   /// Of one that is missing, and whether one of them explains more.
   void weigh_look_alikes(std::size_t rank) {
+    constexpr int kMostExchanges = 2;
     look_alikes_.emplace_back();
     for (int exchange = 0;; ++exchange) {
       std::vector<std::size_t> missing;
@@ -348,15 +348,13 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
       judge_by(std::move(*beside));
     }
   }
-  const auto defend = [&] {
-    if (!options.estimate_noise || missing.empty()) return;
+  if (options.estimate_noise && !missing.empty()) {
     const bool as_stated = under->fit.model.noise == stated && under->fit.p_value > kFitsAnyway;
     Defended defended = defended_against_noise(
         recordings, *under, with, missing,
         {stated, static_cast<double>(run.result.tried), options.level, as_stated});
     if (defended.otherwise) judge_by(std::move(*defended.otherwise));
-  };
-  defend();
+  }
   explain(run.result, run.searched, under->fit, with);
   const Noise& asked_of = options.estimate_noise ? stated : fit.model.noise;
   bool answered = under->noise.changed();  // the noise is not the model's any more

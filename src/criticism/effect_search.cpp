@@ -4,7 +4,6 @@
 
 #include "criticism/best_set.hpp"
 #include "criticism/formula_search.hpp"
-#include "criticism/known_causes.hpp"
 #include "linalg/dense.hpp"
 #include "statistics/distributions.hpp"
 
@@ -240,14 +239,29 @@ void EffectSearch::select(ScoreTest& left, const FitState& ground, std::vector<T
   }
 }
 
+std::vector<std::size_t> EffectSearch::missing_places() const {
+  std::vector<std::size_t> places;
+  places.reserve(missing_.size());
+  for (const MissingEffect& one : missing_) places.push_back(one.tested);
+  return places;
+}
+
+SearchGround EffectSearch::ground_of(const FitState& fit, const ScoreTest& left,
+                                     double next_share) const {
+  return {fit,
+          left,
+          fit_.adjustment.dof,
+          tried_,
+          options_.level,
+          kSecondLevel * options_.level,
+          next_share,
+          options_.most_missing};
+}
+
 /// Known effects come in the place of a free form that they explain together.
 void EffectSearch::take_known_causes(const FitState& ground, const ScoreTest& left) {
-  std::vector<std::size_t> found;
-  for (const MissingEffect& one : missing_) found.push_back(one.tested);
   const std::vector<KnownCause> causes =
-      known_causes_of(found, tested_,
-                      {ground, left, fit_.adjustment.dof, tried_, options_.level,
-                       kSecondLevel * options_.level, kSecondShare, options_.most_missing});
+      known_causes_of(missing_places(), tested_, ground_of(ground, left, kSecondShare));
   if (causes.empty()) return;
   missing_.clear();
   nuisance_.resize(nuisance_.rows(), 0);
@@ -273,24 +287,18 @@ void EffectSearch::take_all(const std::vector<std::size_t>& places) {
 
 /// Among all that was tested, formulas that were taken included.
 void EffectSearch::take_best_set(const FitState& ground, const ScoreTest& left) {
-  std::vector<std::size_t> found;
-  for (const MissingEffect& one : missing_) found.push_back(one.tested);
-  if (found.empty()) return;
-  const int dof = fit_.adjustment.dof - static_cast<int>(events_.cols());
-  const std::vector<std::size_t> best =
-      better_set(found, tested_,
-                 {ground, left, dof, tried_, options_.level, kSecondLevel * options_.level,
-                  kOutByLarge, options_.most_missing});
-  if (best != found) take_all(best);
+  if (missing_.empty()) return;
+  SearchGround beside_events = ground_of(ground, left, kOutByLarge);
+  beside_events.dof -= static_cast<int>(events_.cols());
+  const std::vector<std::size_t> best = better_set(missing_places(), tested_, beside_events);
+  if (best != missing_places()) take_all(best);
 }
 
 /// Nothing is significant by itself. What hides much leaves a chi^2 that is hardly small.
 void EffectSearch::take_masked() {
   constexpr double kHides = 0.2;  // p
   if (chi2_p_value(fit_.adjustment.chi2, fit_.adjustment.dof) > kHides) return;
-  const MaskedSet masked =
-      masked_set(tested_, {fit_, tests_, fit_.adjustment.dof, tried_, options_.level,
-                           kSecondLevel * options_.level, kSecondShare, options_.most_missing});
+  const MaskedSet masked = masked_set(tested_, ground_of(fit_, tests_, kSecondShare));
   if (masked.tested.empty()) return;
   take_all(masked.tested);
   for (const std::size_t one : masked.tested) {
@@ -301,8 +309,7 @@ void EffectSearch::take_masked() {
 }
 
 void EffectSearch::exchange(std::size_t rank, std::size_t tested) {
-  std::vector<std::size_t> places;
-  for (const MissingEffect& one : missing_) places.push_back(one.tested);
+  std::vector<std::size_t> places = missing_places();
   places.at(rank) = tested;
   take_all(places);
   estimate_jointly();

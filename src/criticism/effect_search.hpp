@@ -16,6 +16,7 @@
 #pragma once
 
 #include "criticism/event_tests.hpp"
+#include "criticism/known_causes.hpp"
 #include "criticism/local_dispersion.hpp"
 #include "criticism/noise_tests.hpp"
 #include "criticism/tested_candidate.hpp"
@@ -74,6 +75,10 @@ class EffectSearch {
   void find_missing();
   void select(ScoreTest& left, const FitState& ground, std::vector<Tested>& still);
   void take_formula(const Tested& formula, std::vector<Tested>& still);
+  /// Places of what is missing.
+  [[nodiscard]] std::vector<std::size_t> missing_places() const;
+  [[nodiscard]] SearchGround ground_of(const FitState& fit, const ScoreTest& left,
+                                       double next_share) const;
   void take_known_causes(const FitState& ground, const ScoreTest& left);
   void take_best_set(const FitState& ground, const ScoreTest& left);
   void take_masked();

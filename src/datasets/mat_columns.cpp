@@ -19,28 +19,17 @@ namespace {
 void read_matrix(const MatElement& matrix, const std::string& file,
                  std::map<std::string, std::vector<double>>& columns) {
   MatElements parts(matrix.data, matrix.begin, file);
-  const MatElement flags = parts.next();
-  if (flags.type != kMatUint32 || flags.data.size() != 8) parts.fail("has no array flags");
-  const MatElement dimensions = parts.next();
-  if (dimensions.type != kMatInt32 || dimensions.data.size() != 8) {
-    parts.fail("has an array that is no matrix");
-  }
-  const auto rows = mat_number<std::int32_t>(dimensions.data, 0);
-  const auto across = mat_number<std::int32_t>(dimensions.data, 4);
-  const MatElement name = parts.next();
-  if (name.type != kMatInt8 || name.data.empty() || !is_plain_text(name.data)) {
-    parts.fail("has an array without a name");
-  }
+  const MatHead head = mat_head(parts);
+  if (head.dimensions.size() != 2) parts.fail("has an array that is no matrix");
+  if (head.name.empty()) parts.fail("has an array without a name");
   const MatElement values = parts.next();
-  const bool real = (mat_number<std::uint32_t>(flags.data, 0) & kMatComplex) == 0;
   std::optional<std::vector<double>> numbers = mat_numbers(values.type, values.data);
   const bool column =
-      (rows == 1 || across == 1) && rows >= 0 && across >= 0 && numbers &&
-      static_cast<std::size_t>(rows) * static_cast<std::size_t>(across) == numbers->size();
-  if (!real || !column) {
-    parts.fail("holds \"" + std::string(name.data) + "\", which is no column of real numbers,");
+      (head.rows() == 1 || head.across() == 1) && numbers && head.elements() == numbers->size();
+  if (head.complex || !column) {
+    parts.fail("holds \"" + head.name + "\", which is no column of real numbers,");
   }
-  columns[std::string(name.data)] = std::move(*numbers);
+  columns[head.name] = std::move(*numbers);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/mat_elements.hpp"
 
+#include "text/plain_text.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
@@ -74,6 +75,30 @@ void MatElements::fail(const std::string& what) const {
   throw InputError(
       file_, 0,
       what + " at byte " + std::to_string(begin_ + at_) + ", expected a MATLAB file of level 5");
+}
+
+MatHead mat_head(MatElements& parts) {
+  constexpr std::size_t kMostDimensions = 32;
+  MatHead head;
+  const MatElement flags = parts.next();
+  if (flags.type != kMatUint32 || flags.data.size() != 8) parts.fail("has no array flags");
+  const auto bits = mat_number<std::uint32_t>(flags.data, 0);
+  head.type = bits & 0xffU;
+  head.complex = (bits & kMatComplex) != 0;
+  if (head.type > 15) return head;  // an object: made otherwise
+  const MatElement dimensions = parts.next();
+  const std::size_t count = dimensions.data.size() / 4;
+  if (dimensions.type != kMatInt32 || count < 2 || count > kMostDimensions) {
+    parts.fail("has an array without dimensions");
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    head.dimensions.push_back(mat_number<std::int32_t>(dimensions.data, 4 * k));
+    if (head.dimensions.back() < 0) parts.fail("has an array with a negative size");
+  }
+  const MatElement name = parts.next();
+  if (name.type != kMatInt8 || !is_plain_text(name.data)) parts.fail("has an array without a name");
+  head.name = name.data;
+  return head;
 }
 
 void require_mat_header(std::string_view bytes, const std::string& file) {

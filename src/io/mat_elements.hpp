@@ -66,6 +66,31 @@ class MatElements {
   std::size_t at_ = 0;
 };
 
+/// A variable or a field, before its values.
+struct MatHead {
+  std::uint32_t type = 0;  ///< MATLAB's class; above 15: an object, of which nothing else is known
+  bool complex = false;
+  std::vector<std::int32_t> dimensions;
+  std::string name;
+
+  [[nodiscard]] bool is_numeric() const { return type >= 6 && type <= 15; }
+  [[nodiscard]] bool is_whole() const { return type >= 8; }
+  [[nodiscard]] bool is_structure() const { return type == 2; }
+  /// Of a matrix; 0 of what has more dimensions.
+  [[nodiscard]] std::size_t rows() const { return size(0); }
+  [[nodiscard]] std::size_t across() const { return size(1); }
+  [[nodiscard]] std::size_t elements() const { return rows() * across(); }
+
+ private:
+  [[nodiscard]] std::size_t size(std::size_t dimension) const {
+    return dimensions.size() == 2 ? static_cast<std::size_t>(dimensions[dimension]) : 0;
+  }
+};
+
+/// Flags, dimensions (two to 32) and name of a variable's elements; throws InputError without them.
+/// Fields have empty names.
+[[nodiscard]] MatHead mat_head(MatElements& parts);
+
 /// Throws InputError, saying what it is instead, where these are not a file's first bytes.
 void require_mat_header(std::string_view bytes, const std::string& file);
 

@@ -24,49 +24,8 @@ constexpr std::int32_t kMostColumns = 64;                    // of a matrix
 constexpr std::size_t kMostFields = 4096;                    // of a structure
 constexpr std::size_t kMostNumbers = std::size_t{1} << 27U;  // in all: 1 GiB
 
-/// A variable or a field, before its values.
-struct MatHead {
-  std::uint32_t type = 0;  ///< MATLAB's class
-  bool complex = false;
-  std::vector<std::int32_t> dimensions;
-  std::string name;
-
-  [[nodiscard]] bool is_numeric() const { return type >= 6 && type <= 15; }
-  [[nodiscard]] bool is_whole() const { return type >= 8; }
-  [[nodiscard]] bool is_structure() const { return type == 2; }
-  /// Of a matrix; 0 of what has more dimensions.
-  [[nodiscard]] std::size_t rows() const { return size(0); }
-  [[nodiscard]] std::size_t across() const { return size(1); }
-  [[nodiscard]] std::size_t elements() const { return rows() * across(); }
-
- private:
-  [[nodiscard]] std::size_t size(std::size_t dimension) const {
-    return dimensions.size() == 2 ? static_cast<std::size_t>(dimensions[dimension]) : 0;
-  }
-};
-
-MatHead head_of(MatElements& parts) {
-  constexpr std::size_t kMostDimensions = 32;
-  MatHead head;
-  const MatElement flags = parts.next();
-  if (flags.type != kMatUint32 || flags.data.size() != 8) parts.fail("has no array flags");
-  const auto bits = mat_number<std::uint32_t>(flags.data, 0);
-  head.type = bits & 0xffU;
-  head.complex = (bits & kMatComplex) != 0;
-  if (head.type > 15) return head;  // an object: made otherwise
-  const MatElement dimensions = parts.next();
-  const std::size_t count = dimensions.data.size() / 4;
-  if (dimensions.type != kMatInt32 || count < 2 || count > kMostDimensions) {
-    parts.fail("has an array without dimensions");
-  }
-  for (std::size_t k = 0; k < count; ++k) {
-    head.dimensions.push_back(mat_number<std::int32_t>(dimensions.data, 4 * k));
-    if (head.dimensions.back() < 0) parts.fail("has an array with a negative size");
-  }
-  const MatElement name = parts.next();
-  if (name.type != kMatInt8 || !is_plain_text(name.data)) parts.fail("has an array without a name");
-  head.name = name.data;
-  return head;
+std::string name_at(const std::string& path, const std::string& name) {
+  return path.empty() ? name : path + "." + name;
 }
 
 /// Reads the variables one after the other.
@@ -117,7 +76,7 @@ class Variables {
     if (element.type != kMatMatrix) where.fail("has an element that is no variable");
     if (element.data.empty()) return;
     MatElements parts(element.data, element.begin, file_);
-    const MatHead head = head_of(parts);
+    const MatHead head = mat_head(parts);
     if (head.is_structure()) {
       read_structure(head, parts, head.name, "", 1);
     } else {
@@ -137,9 +96,8 @@ class Variables {
       for (std::size_t f = 0; f < names.size(); ++f) {
         const MatElement field = parts.next();
         if (field.type != kMatMatrix) parts.fail("has a field that is no array");
-        const std::string name = path.empty() ? names[f] : path + "." + names[f];
         if (count == 1) {
-          read_field(field, table, name, depth);
+          read_field(field, table, name_at(path, names[f]), depth);
         } else {
           each[f].push_back(lone_number(field));
         }
@@ -150,9 +108,8 @@ class Variables {
       const bool any = std::any_of(each[f].begin(), each[f].end(), [](double one) {
         return one == one;  // no NaN
       });
-      const std::string name = path.empty() ? names[f] : path + "." + names[f];
       if (any) {
-        add(table, {name, std::move(each[f]), false});
+        add(table, {name_at(path, names[f]), std::move(each[f]), false});
       } else {
         pass_over("fields that hold no single numbers", 1);
       }
@@ -185,7 +142,7 @@ class Variables {
                   int depth) {
     if (field.data.empty()) return;
     MatElements parts(field.data, field.begin, file_);
-    const MatHead head = head_of(parts);
+    const MatHead head = mat_head(parts);
     if (head.is_structure()) {
       read_structure(head, parts, table, name, depth + 1);
     } else {
@@ -198,7 +155,7 @@ class Variables {
     constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
     if (field.data.empty()) return kNothing;
     MatElements parts(field.data, field.begin, file_);
-    const MatHead head = head_of(parts);
+    const MatHead head = mat_head(parts);
     if (!head.is_numeric() || head.complex || head.elements() != 1) return kNothing;
     const std::optional<std::vector<double>> values = values_of(parts);
     return values->size() == 1 ? values->front() : kNothing;

@@ -53,9 +53,7 @@ std::string chances_in_words(const Explanations& explanations) {
     chances.push_back(fmt::format("{} {}", with_look_alikes(one.effect, one.otherwise),
                                   likelihood_text(one.probability)));
   }
-  std::string text;
-  for (const std::string& one : chances) text += (text.empty() ? "" : "; ") + one;
-  return text;
+  return fmt::format("{}", fmt::join(chances, "; "));
 }
 
 }  // namespace
@@ -97,9 +95,8 @@ PageTable sets_table(const Diagnosis& diagnosis) {
     for (const ExplainingEffect& effect : one.effects) {
       sizes.push_back(typeset(in_words(effect.effect, effect.sd)));
     }
-    std::string said;
-    for (const std::string& size : sizes) said += (said.empty() ? "" : "; ") + size;
-    table.rows.push_back({set_in_words(one) + (one.named ? " \u2013 named above" : ""), said,
+    table.rows.push_back({set_in_words(one) + (one.named ? " \u2013 named above" : ""),
+                          fmt::format("{}", fmt::join(sizes, "; ")),
                           likelihood_text(one.probability), fmt::format("{:.1f}", one.behind),
                           fmt::format("{:.1f}", one.chi2_decrease)});
     table.tones.push_back(Tone::neutral);

@@ -23,13 +23,7 @@ constexpr double kTravel = 0.03;  // likewise
 constexpr Mounting kSensor{0.3, 0.0, 0.0};
 
 SimulatedRecording surveyed_hall(std::uint64_t seed) {
-  SimulationSettings settings;
-  settings.mesh = "4x4";
-  settings.tours = 2;
-  settings.seed = seed;
-  settings.no_compass = true;
-  settings.gyro = true;
-  settings.range_sensor = true;
+  SimulationSettings settings = testing::seen_hall("4x4", seed);
   settings.mounted.sensor = kSensor;
   Effect turn = catalogue_effect("wheelbase");
   turn.coefficients = {kTurn};

@@ -21,13 +21,9 @@ namespace trussmap::wrong_labels_test {
 namespace {
 
 SimulatedRecording hall(std::uint64_t seed, bool compass) {
-  SimulationSettings settings;
-  settings.mesh = "5x5";
-  settings.tours = 2;
-  settings.seed = seed;
+  SimulationSettings settings = testing::seen_hall("5x5", seed);
   settings.no_compass = !compass;
   settings.gyro = !compass;
-  settings.range_sensor = true;
   settings.no_survey = seed % 2 == 0;
   return simulate(settings, {});
 }

@@ -20,16 +20,9 @@ namespace trussmap::misread_ends_test {
 namespace {
 
 SimulatedRecording hall(std::uint64_t seed) {
-  SimulationSettings settings;
-  settings.mesh = "5x5";
-  settings.tours = 2;
-  settings.seed = seed;
-  settings.no_compass = true;
-  settings.gyro = true;
-  settings.range_sensor = true;
   Effect travel = catalogue_effect("travel scale");
   travel.coefficients = {0.03};
-  return simulate(settings, {travel});
+  return simulate(testing::seen_hall("5x5", seed), {travel});
 }
 
 HeldOut held_out_of(const Recording& recording, const Model& model) {
