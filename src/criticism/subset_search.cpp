@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 
 namespace trussmap {
 namespace {
@@ -328,6 +329,9 @@ void SubsetSearch::add_larger(std::vector<CandidateSet>& kept, double& best) con
 }
 
 std::vector<CandidateSet> SubsetSearch::run() const {
+  if (idx(options_.most) > kMostInSet || idx(options_.most) >= belief_.log_sets.size()) {
+    throw std::invalid_argument("sets have more members than there are beliefs for");
+  }
   const auto count = static_cast<int>(gram_.blocks.size());
   double best = 0.0;
   std::vector<CandidateSet> kept{CandidateSet{}};

@@ -76,7 +76,8 @@ class SubsetSearch {
   /// Keeps references.
   SubsetSearch(const CandidateGram& gram, const SetBelief& belief, const SubsetOptions& options);
 
-  /// All within the window, best first; the empty set counts.
+  /// All within the window, best first; the empty set counts. Throws std::invalid_argument where
+  /// the belief has no number for sets as large as the options allow.
   [[nodiscard]] std::vector<CandidateSet> run() const;
 
   /// Of one set; nothing of members that look alike, or that the others determine all but 0.05 of.

@@ -49,7 +49,7 @@ Problem problem_of(const std::vector<Eigen::MatrixXd>& columns, const Eigen::Vec
   result.gram.g = result.X.transpose() * r;
   std::vector<double> log_beliefs;
   for (const BlockBelief& one : result.belief.blocks) log_beliefs.push_back(one.log_share);
-  result.belief.log_sets = log_symmetric(log_beliefs, 3);
+  result.belief.log_sets = log_symmetric(log_beliefs, 4);
   return result;
 }
 
