@@ -284,7 +284,7 @@ TurnAgreement check_recording(Checked& checked, MotionRows& drive) {
   if (!recording.drive.wheels.empty()) {
     if (checked.robot == nullptr) return {};  // what they do is not known
     check_still_columns(checked);
-    check_columns(checked);
+    check_other_drive(checked);
   }
   const TurnAgreement turns = check_compass(checked);
   if (!checked.wheelbase_known && turns.sign != 0) {

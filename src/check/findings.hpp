@@ -73,7 +73,7 @@ void check_still_columns(Checked& checked);
 /// Columns of drives with other wheels than two, with signs or places that are not theirs: reported
 /// where the drive agrees with the other sensors without the mistake, and with it by none of
 /// theirs.
-void check_columns(Checked& checked);
+void check_other_drive(Checked& checked);
 /// A steering angle in degrees, by its values alone. `drive` is as recorded, its columns
 /// covariates.
 [[nodiscard]] bool steers_in_degrees(const Recording& recording, const Robot& robot);

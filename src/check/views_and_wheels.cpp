@@ -123,7 +123,7 @@ struct Explained {
 Explained best_explanation(const Checked& checked, const std::vector<Pair>& pairs, Explained best) {
   const MotionRows& drive = checked.recording.drive;
   std::vector<WheelMistake> mistakes{WheelMistake::none, WheelMistake::exchanged};
-  if (drive.of_two_wheels()) {  // of others, check_columns knows more
+  if (drive.of_two_wheels()) {  // of others, check_other_drive knows more
     mistakes.insert(mistakes.end(), {WheelMistake::negated, WheelMistake::left_negated,
                                      WheelMistake::right_negated});
   }

@@ -16,6 +16,7 @@
 #include "criticism/unobservable.hpp"
 #include "criticism/verdict.hpp"
 #include "drive/slow_covariates.hpp"
+#include "fit/fit_warnings.hpp"
 #include "linalg/dense.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/held_out.hpp"
@@ -55,7 +56,6 @@ class Diagnostician {
     result_.dof = fit_.dof;
     result_.coefficients = fit_.coefficients;
     result_.level = options_.level;
-    result_.warnings = fit_.warnings;
     result_.held_out = legs_->metrics();
     result_.lacks = lacks_of(recordings_, fit_.model.robot, fit_.options);
     search_.run();
@@ -311,15 +311,6 @@ std::vector<Candidate> candidates_found(const DiagnosisRun& run) {
   return found;
 }
 
-/// "6 sightings were left out": what becomes of them with what is missing.
-void tell_of_left_out(Diagnosis& diagnosis, std::size_t still) {
-  for (std::string& one : diagnosis.warnings) {
-    if (!one.ends_with(" were left out")) continue;
-    one += still == 0 ? "; with what is missing added all of them fit"
-                      : joined("; with what is missing added ", still, " still would be");
-  }
-}
-
 /// About a fit that may be believed.
 DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                              const Noise& stated, const DiagnoseOptions& options,
@@ -357,21 +348,20 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
   }
   explain(run.result, run.searched, under->fit, with);
   const Noise& asked_of = options.estimate_noise ? stated : fit.model.noise;
+  FitAnswers answers;
   bool answered = under->noise.changed();  // the noise is not the model's any more
   if (!missing.empty()) {
     RemainingErrors rest = remaining_errors(recordings, under->fit, with, asked_of, missing);
     run.result.events = std::move(rest.events);
     run.result.noise = std::move(rest.noise);
-    if (rest.fitted) tell_of_left_out(run.result, rest.left_out);
+    if (rest.fitted) answers.left_out_with_missing = rest.left_out;
     answered = answered || (rest.fitted && rest.p_value > kExplains);
   } else if (under->noise.changed()) {
     run.result.noise = noise_beyond(recordings, under->fit, stated);
   }
   // What is missing says why the errors are too large.
-  if (answered && run.result.verdict == Diagnosis::Verdict::missing) {
-    std::erase_if(run.result.warnings,
-                  [](const std::string& one) { return one.rfind("chi^2 = ", 0) == 0; });
-  }
+  answers.misfit = answered && run.result.verdict == Diagnosis::Verdict::missing;
+  run.result.warnings = fit_warnings(*under->fit.state, answers);
   if (options.estimate_noise) {
     object_to_noise(under->noise, run.result);
     run.result.under = std::move(under);

@@ -3,7 +3,7 @@
 #include "criticism/diagnosis.hpp"
 #include "criticism/effect_strength.hpp"
 #include "criticism/effect_trials.hpp"
-#include "criticism/place_uncertainty.hpp"
+#include "criticism/grown_model.hpp"
 #include "criticism/refits.hpp"
 #include "fit/fit_state.hpp"
 #include "linalg/dense.hpp"
@@ -43,95 +43,100 @@ bool reckons_worse(const HorizonChange& change, const Finding& with) {
          (with.p_adjusted > kPlain || change.rise_in_sds > kBeyondChance);
 }
 
+/// Dead reckoning over the longer horizon with another fit beside the present one, as the other's
+/// path judges both; none where there are too few windows.
+HorizonChange reckoned_change(const ModelFit& present, const ModelFit& other) {
+  const HorizonChange change = horizon_change(*present.state, *other.state, 30.0);
+  return change.windows < kFewestWindows ? HorizonChange{} : change;
+}
+
 /// Adds what is found, one effect after the other.
 class Discoverer {
  public:
-  Discoverer(const std::vector<DrivenRecording>& recordings, const Model& model,
-             const DiscoverOptions& options)
-      : recordings_(recordings), options_(options) {
-    given_ = model.effects.size();
-    stated_ = model.noise;
-    tell({DiscoveryStage::Kind::fitting_given, {}});
-    result_.given = fit_model(recordings, model, options.diagnosis.fit);
-    result_.found = result_.given;
-    found_.resize(given_);
+  Discoverer(const std::vector<DrivenRecording>& recordings, const DiscoverOptions& options,
+             ModelFit given)
+      : recordings_(recordings),
+        options_(options),
+        stated_(given.model.noise),
+        grown_(recordings, std::move(given)) {
+    result_.given = grown_.fit();
     record();
   }
 
   Discovery run() {
     while (true) {
-      if (result_.steps.size() > 1 && options_.go_on && !options_.go_on(result_.found)) {
+      if (result_.steps.size() > 1 && options_.go_on && !options_.go_on(grown_.fit())) {
         stop(StopReason::told_to, {});
-        result_.consistent = false;
-        return std::move(result_);
+        return finished(false);
       }
-      tell({DiscoveryStage::Kind::searching, {}});
-      DiagnosisRun diagnosis =
-          run_diagnosis(recordings_, result_.found, stated_, options_.diagnosis, legs_);
-      legs_ = {};
-      result_.last = std::move(diagnosis.result);
-      take_noise();
-      candidates_ = std::move(diagnosis.candidates);
-      if (result_.steps.size() == 1) result_.first = result_.last;
-      result_.steps.back().held_out = result_.last.held_out;
-      result_.stopped = {};
-      if (diagnosis.gross) {
-        take_constants(*diagnosis.gross);
+      const std::optional<GrossConstants> gross = diagnose_present();
+      if (gross) {
+        take_constants(*gross);
         continue;
       }
-      if (found_.size() < given_ + options_.most_effects && add_for_reckoning()) continue;
+      if (grown_.added() < options_.most_effects && add_for_reckoning()) continue;
       if (result_.last.verdict != Diagnosis::Verdict::missing) break;
-      if (found_.size() >= given_ + options_.most_effects) {
+      if (grown_.added() >= options_.most_effects) {
         result_.stopped = {StopReason::limit_reached, {}, options_.most_effects};
         break;
       }
       if (!(result_.last.findings.front().only_together ? add_together() : add_best())) break;
     }
-    result_.consistent = result_.last.verdict == Diagnosis::Verdict::nothing_missing;
-    widen_for_places(result_.found, found_);
-    return std::move(result_);
+    return finished(result_.last.verdict == Diagnosis::Verdict::nothing_missing);
   }
 
  private:
+  Discovery finished(bool consistent) {
+    result_.consistent = consistent;
+    result_.found = std::move(grown_).finished();
+    return std::move(result_);
+  }
+
   void tell(const DiscoveryStage& stage) const {
     if (options_.progress) options_.progress(stage);
   }
 
-  [[nodiscard]] ModelFit fitted(const std::vector<Effect>& effects) const {
-    Model model = result_.found.model;
-    model.effects = effects;
-    return refit(recordings_, model, result_.found);
+  /// The constants that come before all else, if any.
+  std::optional<GrossConstants> diagnose_present() {
+    tell({DiscoveryStage::Kind::searching, {}});
+    DiagnosisRun diagnosis =
+        run_diagnosis(recordings_, grown_.fit(), stated_, options_.diagnosis, legs_);
+    legs_ = {};
+    result_.last = std::move(diagnosis.result);
+    take_noise();
+    candidates_ = std::move(diagnosis.candidates);
+    if (result_.steps.size() == 1) result_.first = result_.last;
+    result_.steps.back().held_out = result_.last.held_out;
+    result_.stopped = {};
+    return std::move(diagnosis.gross);
   }
 
   /// The model found goes by the noise that the diagnosis estimated.
   void take_noise() {
     DiscoveryStep& step = result_.steps.back();
     if (result_.last.under) {
-      result_.found = result_.last.under->fit;
-      if (result_.steps.size() == 1) result_.given = result_.found;
-      step.chi2 = result_.found.chi2;
-      step.dof = result_.found.dof;
-      step.left_out = result_.found.left_out.size();
+      grown_.take_fit(result_.last.under->fit);
+      if (result_.steps.size() == 1) result_.given = grown_.fit();
+      tell_fit(step);
     }
-    step.reckoned_10 = shown(present_horizons().after_10);
-    step.reckoned_30 = shown(present_horizons().after_30);
+    tell_reckoning(step);
   }
 
-  /// Of the present fit; reckoned once.
-  const HorizonErrors& present_horizons() {
-    if (judged_ != result_.found.state) {
-      judged_ = result_.found.state;
-      horizons_ = horizon_errors(*judged_);
-    }
-    return horizons_;
+  void tell_fit(DiscoveryStep& step) const {
+    step.chi2 = grown_.fit().chi2;
+    step.dof = grown_.fit().dof;
+    step.left_out = grown_.fit().left_out.size();
+  }
+
+  void tell_reckoning(DiscoveryStep& step) {
+    step.reckoned_10 = shown(grown_.horizons().after_10);
+    step.reckoned_30 = shown(grown_.horizons().after_30);
   }
 
   /// A line of the ladder for the present fit; its diagnosis, which is next, has the held-out legs.
   DiscoveryStep& record() {
     DiscoveryStep step;
-    step.chi2 = result_.found.chi2;
-    step.dof = result_.found.dof;
-    step.left_out = result_.found.left_out.size();
+    tell_fit(step);
     result_.steps.push_back(std::move(step));
     return result_.steps.back();
   }
@@ -140,26 +145,27 @@ class Discoverer {
   void take_constants(const GrossConstants& gross) {
     const std::vector<Effect>& all = gross.fit.model.effects;
     std::vector<Effect> together;
+    std::vector<Candidate> added;
     for (std::size_t count = gross.first + 1; count <= all.size(); ++count) {
       const std::size_t place = count - 1 - gross.first;
-      found_.push_back(candidates_[place]);
-      const double before = result_.found.chi2;
+      added.push_back(candidates_[place]);
+      const double before = grown_.fit().chi2;
       Model model = gross.fit.model;
       model.effects.resize(count);
       try {
-        result_.found = count == all.size() ? gross.fit : refit(recordings_, model, gross.fit);
+        grown_.add(added, count == all.size() ? gross.fit : refit(recordings_, model, gross.fit));
       } catch (const SolveError&) {  // lost without those that come next
         together.push_back(all[count - 1]);
         continue;
       }
+      added.clear();
       DiscoveryStep& step = record();
-      step.added = result_.found.model.effects.back();
+      step.added = grown_.fit().model.effects.back();
       step.together = std::exchange(together, {});
-      step.predicted_decrease = before - result_.found.chi2;
-      step.held_out = predict_held_out(recordings_, result_.found, options_.diagnosis.legs);
+      step.predicted_decrease = before - grown_.fit().chi2;
+      step.held_out = predict_held_out(recordings_, grown_.fit(), options_.diagnosis.legs);
       step.predicted = metrics_of(step.held_out);
-      step.reckoned_10 = shown(present_horizons().after_10);
-      step.reckoned_30 = shown(present_horizons().after_30);
+      tell_reckoning(step);
       step.look_alikes = result_.last.findings[place].look_alikes;
     }
   }
@@ -178,10 +184,10 @@ class Discoverer {
     std::vector<Trial> trials;
     for (const std::size_t k : contenders) {
       tell({DiscoveryStage::Kind::fitting_effect, candidates_[k].effect.name});
-      std::vector<Effect> effects = result_.found.model.effects;
+      std::vector<Effect> effects = grown_.fit().model.effects;
       effects.push_back(candidates_[k].effect);
       try {
-        ModelFit fit = fitted(effects);
+        ModelFit fit = grown_.fitted(effects);
         if (was_fitted(fit)) trials.push_back({candidates_[k], std::move(fit)});
       } catch (const SolveError&) {
         continue;
@@ -198,7 +204,7 @@ class Discoverer {
       return false;
     }
     const std::size_t best = best_of(trials, recordings_, options_.diagnosis.legs);
-    const HorizonChange reckoned = reckoned_change(trials[best].fit);
+    const HorizonChange reckoned = reckoned_change(grown_.fit(), trials[best].fit);
     const bool worse = predicts_worse(result_.steps.back().held_out, trials[best], recordings_,
                                       options_.diagnosis.legs);
     if ((worse && reckoned.share >= kLess) || reckons_worse(reckoned, winner)) {
@@ -206,13 +212,12 @@ class Discoverer {
       return false;
     }
     std::vector<LookAlike> look_alikes = rivals_of(trials, best, winner);
-    found_.push_back(trials[best].candidate);
     legs_ = {trials[best].fit.state, trials[best].legs};
-    result_.found = std::move(trials[best].fit);
-    seek_parameters_anew();
-    std::vector<std::string> dropped = eliminate_backward();
+    grown_.add({trials[best].candidate}, std::move(trials[best].fit));
+    grown_.seek_parameters_anew();
+    std::vector<std::string> dropped = grown_.eliminate_backward();
     DiscoveryStep& step = record();
-    step.added = result_.found.model.effects.back();
+    step.added = grown_.fit().model.effects.back();
     step.dropped = std::move(dropped);
     step.predicted_decrease = winner.score;
     step.predicted = winner.held_out;
@@ -229,7 +234,7 @@ class Discoverer {
       added.push_back(candidates_[k]);
       effects.push_back(candidates_[k].effect);
     }
-    std::optional<ModelFit> fit = if_fitted_with(recordings_, result_.found, effects);
+    std::optional<ModelFit> fit = if_fitted_with(recordings_, grown_.fit(), effects);
     if (!fit || !was_fitted(*fit)) {
       stop(StopReason::cannot_be_fitted, effects.front().name);
       return false;
@@ -240,11 +245,10 @@ class Discoverer {
       stop(StopReason::predicts_worse, effects.front().name);
       return false;
     }
-    found_.insert(found_.end(), added.begin(), added.end());
     legs_ = {trial.fit.state, trial.legs};
-    result_.found = std::move(trial.fit);
+    grown_.add(added, std::move(trial.fit));
     DiscoveryStep& step = record();
-    effects = result_.found.model.effects;
+    effects = grown_.fit().model.effects;
     step.added = effects.back();
     step.together.assign(effects.end() - static_cast<std::ptrdiff_t>(added.size()),
                          effects.end() - 1);
@@ -255,20 +259,13 @@ class Discoverer {
     return true;
   }
 
-  /// Dead reckoning over the longer horizon with another fit beside the present one, as the other's
-  /// path judges both; none where there are too few windows.
-  [[nodiscard]] HorizonChange reckoned_change(const ModelFit& fit) const {
-    const HorizonChange change = horizon_change(*result_.found.state, *fit.state, 30.0);
-    return change.windows < kFewestWindows ? HorizonChange{} : change;
-  }
-
   /// What the tests of all effects together are too many for may yet be plain where a known error
   /// of the motion is asked for by itself: a wheelbase beside a loss in arcs. It has to be surely
   /// there and to make dead reckoning better; of several the one that explains most is taken. Only
   /// beside something found: nothing is sought so in recordings that the model explains.
   bool add_for_reckoning() {
-    if (found_.size() == given_) return false;
-    if (present_horizons().after_30.windows < kFewestWindows) return false;
+    if (grown_.added() == 0) return false;
+    if (grown_.horizons().after_30.windows < kFewestWindows) return false;
     std::optional<Trial> best;
     const Finding* asked = nullptr;
     double least = std::numeric_limits<double>::infinity();
@@ -281,16 +278,15 @@ class Discoverer {
       if (trials.empty()) continue;
       const ModelFit& fit = trials.front().fit;
       if (wald(fit, fit.model.effects.size() - 1) < kWorthKeeping) continue;
-      if (chi2_of_all(fit) >= least || reckoned_change(fit).share >= kLess) continue;
+      if (chi2_of_all(fit) >= least || reckoned_change(grown_.fit(), fit).share >= kLess) continue;
       least = chi2_of_all(fit);
       best = std::move(trials.front());
       asked = &result_.last.findings[k];
     }
     if (!best) return false;
-    found_.push_back(best->candidate);
-    result_.found = std::move(best->fit);
+    grown_.add({best->candidate}, std::move(best->fit));
     DiscoveryStep& step = record();
-    step.added = result_.found.model.effects.back();
+    step.added = grown_.fit().model.effects.back();
     step.predicted_decrease = asked->score;
     step.predicted = asked->held_out;
     return true;
@@ -301,58 +297,12 @@ class Discoverer {
     if (result_.stopped.effect.empty()) result_.stopped = {reason, effect, 0};
   }
 
-  /// Places and thresholds of all effects found, each with the others in the model.
-  void seek_parameters_anew() {
-    for (std::size_t k = given_; k < found_.size(); ++k) {
-      if (found_[k].parameters.empty()) continue;
-      std::vector<Effect> others = result_.found.model.effects;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-      const ModelFit without = fitted(others);
-      const Candidate better = refined(ScoreTest(*without.state), found_[k]);
-      if (better.parameters == found_[k].parameters) continue;
-      std::vector<Effect> effects = result_.found.model.effects;
-      effects[k] = better.effect;
-      ModelFit fit = fitted(effects);
-      if (chi2_of_all(fit) >= chi2_of_all(result_.found)) continue;
-      found_[k] = better;
-      result_.found = std::move(fit);
-    }
-  }
-
-  /// Effects that the others have made superfluous, the weakest first.
-  std::vector<std::string> eliminate_backward() {
-    std::vector<std::string> dropped;
-    while (true) {
-      std::size_t weakest = found_.size();
-      double least = 1.0;
-      for (std::size_t k = given_; k < found_.size(); ++k) {
-        const double strength =
-            wald(result_.found, k) /
-            (kWorthKeeping * static_cast<double>(found_[k].effect.shape.size()));
-        if (strength < least) {
-          least = strength;
-          weakest = k;
-        }
-      }
-      // The one just added is there because it was significant.
-      if (weakest + 1 >= found_.size()) return dropped;
-      dropped.push_back(found_[weakest].effect.name);
-      std::vector<Effect> effects = result_.found.model.effects;
-      effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(weakest));
-      found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(weakest));
-      result_.found = fitted(effects);
-    }
-  }
-
   const std::vector<DrivenRecording>& recordings_;
   const DiscoverOptions& options_;
-  std::size_t given_ = 0;
-  Noise stated_;
-  std::vector<Candidate> found_;            ///< one per effect of the model; empty for those given
-  std::vector<Candidate> candidates_;       ///< one per finding of the last diagnosis
-  KnownLegs legs_;                          ///< of what was added last
-  std::shared_ptr<const FitState> judged_;  ///< of which the errors over the horizons are
-  HorizonErrors horizons_;
+  const Noise stated_;
+  GrownModel grown_;
+  std::vector<Candidate> candidates_;  ///< one per finding of the last diagnosis
+  KnownLegs legs_;                     ///< of what was added last
   Discovery result_;
 };
 
@@ -360,7 +310,8 @@ class Discoverer {
 
 Discovery discover(const std::vector<DrivenRecording>& recordings, const Model& model,
                    const DiscoverOptions& options) {
-  return Discoverer(recordings, model, options).run();
+  if (options.progress) options.progress({DiscoveryStage::Kind::fitting_given, {}});
+  return Discoverer(recordings, options, fit_model(recordings, model, options.diagnosis.fit)).run();
 }
 
 }  // namespace trussmap

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_adjustment.hpp"
 
-#include "estimation/kinds/kinds.hpp"
 #include "estimation/kinds/sighted.hpp"
 #include "estimation/multilateration.hpp"
 #include "estimation/recording_descent.hpp"
@@ -14,8 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <set>
-#include <string_view>
 
 namespace trussmap {
 namespace {
@@ -145,36 +142,6 @@ RobustFit robust_fit(RecordingSystem& system, const RecordingProblem& problem,
   return look_again(system, problem, std::move(before));
 }
 
-/// In a word: what was left out.
-std::string kinds_left_out(const RecordingProblem& problem, const std::vector<int>& left_out) {
-  std::set<std::string_view> out;
-  for (const int k : left_out) out.insert(problem.measurements[idx(k)].kind->facts().several);
-  std::string text;
-  for (const MeasurementKind* kind : kinds::all()) {
-    const std::string_view several = kind->facts().several;
-    if (out.erase(several) > 0) text.append(text.empty() ? "" : " or ").append(several);
-  }
-  return text;
-}
-
-void add_warnings(const RecordingProblem& problem, RecordingAdjustment& result) {
-  constexpr double kImplausible = 1e-6;
-  if (!result.converged) {
-    result.warnings.push_back(joined("no minimum was reached in ", result.iterations,
-                                     " iterations: the map is not the best one"));
-  }
-  if (result.p_value < kImplausible) {
-    result.warnings.push_back(joined("chi^2 = ", fixed_text(result.chi2, 1), " is too large for ",
-                                     result.dof,
-                                     " degrees of freedom: the model's noise is too small, "
-                                     "an effect is missing, or sightings are wrong"));
-  }
-  if (!result.left_out.empty()) {
-    const std::string what = kinds_left_out(problem, result.left_out);
-    result.warnings.push_back(joined(result.left_out.size(), " ", what, " were left out"));
-  }
-}
-
 }  // namespace
 
 RecordingAdjustment adjust(const RecordingProblem& problem, const EffectParameters& border,
@@ -230,7 +197,6 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
   result.gradient_norm = system.gradient_norm();
   if (options.landmark_uncertainties) take_uncertainties(system, problem, result);
   if (coefficients > 0) result.coefficient_covariance = system.coefficient_covariance();
-  add_warnings(problem, result);
   return result;
 }
 

@@ -63,7 +63,6 @@ struct RecordingAdjustment {
   std::vector<int> left_out;  ///< measurements, ascending
   double gate_widened =
       1.0;  ///< by this factor (in sds), lest too many are left out; infinity: none
-  std::vector<std::string> warnings;
 };
 
 /// Coefficients that the motion cannot determine.

@@ -5,12 +5,12 @@
 #include "drive/well_formed.hpp"
 #include "estimation/measurement_rows.hpp"
 #include "fit/fit_state.hpp"
+#include "fit/fit_warnings.hpp"
 #include "recording/time_spans.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 namespace trussmap {
@@ -89,9 +89,7 @@ ModelFit model_fit(FitState state, const FitOptions& options) {
   fit.p_value = state.adjustment.p_value;
   fit.settled = state.settled;
   fit.left_out = left_out_texts(state);
-  fit.warnings = state.adjustment.warnings;
-  std::ranges::move(mirror_warnings(state.problem, state.adjustment),
-                    std::back_inserter(fit.warnings));
+  fit.warnings = fit_warnings(state);
   fit.state = std::make_shared<const FitState>(std::move(state));
   return fit;
 }

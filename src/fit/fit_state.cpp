@@ -4,7 +4,6 @@
 
 #include "estimation/common_errors.hpp"
 #include "estimation/segment_noise.hpp"
-#include "estimation/student_tails.hpp"
 #include "fit/fit_stages.hpp"
 #include "fit/noise_under_effects.hpp"
 #include "odometry/wheels_and_gyro.hpp"
@@ -169,19 +168,10 @@ std::string still_moving(const FitterOptions& options, const FitChange& change) 
   return moving;
 }
 
-void warn(int rounds, const FitterOptions& options, const FitChange& change, FitState& fit) {
-  for (const NoiseProcess& one : fit.model.noise.processes) {
-    if (!(one.tails > 0.0) || has_used_tails(one)) continue;
-    fit.adjustment.warnings.push_back(
-        joined("the tails of the noise ", name_of(one.channel), ", ", name_of(one.process),
-               " are not used: only white noise of sightings has them"));
-  }
+void tell_whether_settled(const FitterOptions& options, const FitChange& change, FitState& fit) {
   if (fit.settled) return;
-  const std::string moving = still_moving(options, change);
-  fit.settled = moving.empty();
-  if (fit.settled) return;
-  fit.adjustment.warnings.push_back(joined("shapes and path did not settle in ", rounds,
-                                           " rounds; the last still moved ", moving));
+  fit.still_moving = still_moving(options, change);
+  fit.settled = fit.still_moving.empty();
 }
 
 }  // namespace
@@ -275,7 +265,8 @@ FitState fit_recordings(const std::vector<DrivenRecording>& recordings, const Mo
   }
   if (options.paths && !now.columns_see_paths()) lay_paths(fit);
   fit.effects = estimates(now);
-  warn(std::min(now.round + 1, options.max_rounds), options, change, fit);
+  fit.rounds = std::min(now.round + 1, options.max_rounds);
+  tell_whether_settled(options, change, fit);
   return std::move(fit);
 }
 

@@ -59,6 +59,8 @@ struct FitState {
   RecordingAdjustment adjustment;
   std::vector<SessionPath> paths;  ///< may be empty where the options ask for none
   bool settled = true;             ///< shapes and path agree
+  int rounds = 0;                  ///< of shapes and path in turn
+  std::string still_moving;        ///< in words, what the last round moved; empty where it settled
 };
 
 /// Throws SolveError as adjust does (but not for coefficients), std::invalid_argument on effects

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "io/model_toml.hpp"
+
 #include "effects/channel_physics.hpp"
 #include "io/model_sections.hpp"
-#include "io/model_tables.hpp"
 #include "io/toml_text.hpp"
 #include "text/plain_text.hpp"
 #include "trussmap/catalogue.hpp"

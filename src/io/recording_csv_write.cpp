@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "io/csv.hpp"
-#include "io/model_text.hpp"
+#include "io/model_toml.hpp"
 #include "io/recording_streams.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"

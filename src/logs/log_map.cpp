@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "logs/log_map.hpp"
 
-#include "io/model_tables.hpp"
+#include "io/model_toml.hpp"
 #include "io/recording_streams.hpp"
 #include "io/toml_values.hpp"
 #include "logs/motion_map.hpp"

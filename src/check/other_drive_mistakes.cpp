@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "check/column_mistakes.hpp"
+#include "check/other_drive_mistakes.hpp"
 
 #include "drive/wheel_kinematics.hpp"
 #include "geometry/units.hpp"
@@ -17,7 +17,7 @@ class List {
   explicit List(std::size_t columns) : columns_(columns) {}
 
   void negated(const std::vector<std::size_t>& which, const char* kind) {
-    ColumnMistake one = none(kind);
+    OtherDriveMistake one = none(kind);
     for (const std::size_t k : which) one.factor[k] = -1.0;
     all_.push_back(std::move(one));
   }
@@ -34,17 +34,18 @@ class List {
     std::swap(order[a], order[b]);
     ordered(order);
   }
-  [[nodiscard]] std::vector<ColumnMistake> take() { return std::move(all_); }
+  [[nodiscard]] std::vector<OtherDriveMistake> take() { return std::move(all_); }
 
  private:
-  [[nodiscard]] ColumnMistake none(const char* kind) const {
-    ColumnMistake one{kind, std::vector<std::size_t>(columns_), std::vector<double>(columns_, 1.0)};
+  [[nodiscard]] OtherDriveMistake none(const char* kind) const {
+    OtherDriveMistake one{kind, std::vector<std::size_t>(columns_),
+                          std::vector<double>(columns_, 1.0)};
     std::iota(one.order.begin(), one.order.end(), 0U);
     return one;
   }
 
   std::size_t columns_;
-  std::vector<ColumnMistake> all_;
+  std::vector<OtherDriveMistake> all_;
 };
 
 std::string names_of(const std::vector<std::size_t>& which, const Robot& robot) {
@@ -63,18 +64,18 @@ std::vector<std::vector<std::size_t>> sides_of(const Robot& robot) {
   return {{all.begin(), half}, {half, all.end()}};
 }
 
-bool is_exchange(const ColumnMistake& mistake) {
+bool is_exchange(const OtherDriveMistake& mistake) {
   return !std::is_sorted(mistake.order.begin(), mistake.order.end());
 }
 
 /// The columns' names in the order in which they seem to be recorded.
-std::string recorded_order(const ColumnMistake& mistake, const Robot& robot) {
+std::string recorded_order(const OtherDriveMistake& mistake, const Robot& robot) {
   return names_of(mistake.order, robot);
 }
 
 }  // namespace
 
-std::vector<std::size_t> ColumnMistake::columns() const {
+std::vector<std::size_t> OtherDriveMistake::columns() const {
   std::vector<std::size_t> result;
   for (std::size_t k = 0; k < order.size(); ++k) {
     if (order[k] != k || factor[k] != 1.0) result.push_back(k);
@@ -82,7 +83,7 @@ std::vector<std::size_t> ColumnMistake::columns() const {
   return result;
 }
 
-std::vector<ColumnMistake> column_mistakes(const Robot& robot) {
+std::vector<OtherDriveMistake> other_drive_mistakes(const Robot& robot) {
   const std::size_t count = robot.columns.size();
   List list(count);
   if (robot.drive == DriveKind::tricycle || robot.drive == DriveKind::ackermann) {
@@ -115,7 +116,7 @@ std::vector<ColumnMistake> column_mistakes(const Robot& robot) {
   return list.take();
 }
 
-std::string in_words(const ColumnMistake& mistake, const Robot& robot) {
+std::string in_words(const OtherDriveMistake& mistake, const Robot& robot) {
   const std::vector<std::size_t> columns = mistake.columns();
   if (is_exchange(mistake)) {
     return columns.size() == 2 ? names_of({columns[0]}, robot) + " and " +
@@ -127,7 +128,7 @@ std::string in_words(const ColumnMistake& mistake, const Robot& robot) {
   return names_of(columns, robot) + " in degrees" + (factor < 0.0 ? ", to the right" : "");
 }
 
-std::string remedy_of(const ColumnMistake& mistake, const Robot& robot) {
+std::string remedy_of(const OtherDriveMistake& mistake, const Robot& robot) {
   const std::vector<std::size_t> columns = mistake.columns();
   if (is_exchange(mistake)) {
     return columns.size() == 2
@@ -142,7 +143,7 @@ std::string remedy_of(const ColumnMistake& mistake, const Robot& robot) {
          (factor < 0.0 ? ", and change its sign: left positive" : "");
 }
 
-std::optional<MotionRows> drive_without(const ColumnMistake& mistake, const MotionRows& drive,
+std::optional<MotionRows> drive_without(const OtherDriveMistake& mistake, const MotionRows& drive,
                                         const Robot& robot) {
   const WheelKinematics kinematics(robot);
   MotionRows result;

@@ -20,7 +20,7 @@
 
 namespace trussmap {
 
-struct ColumnMistake {
+struct OtherDriveMistake {
   const char* kind = "";             ///< one of check_kinds()
   std::vector<std::size_t> order{};  ///< the k-th column is recorded as this one
   std::vector<double> factor{};      ///< by which the k-th has to be multiplied
@@ -30,16 +30,16 @@ struct ColumnMistake {
 };
 
 /// Simple ones first.
-[[nodiscard]] std::vector<ColumnMistake> column_mistakes(const Robot& robot);
+[[nodiscard]] std::vector<OtherDriveMistake> other_drive_mistakes(const Robot& robot);
 
 /// "the sign of fl changed": how a finding says what is tried.
-[[nodiscard]] std::string in_words(const ColumnMistake& mistake, const Robot& robot);
+[[nodiscard]] std::string in_words(const OtherDriveMistake& mistake, const Robot& robot);
 /// "change the sign of fl".
-[[nodiscard]] std::string remedy_of(const ColumnMistake& mistake, const Robot& robot);
+[[nodiscard]] std::string remedy_of(const OtherDriveMistake& mistake, const Robot& robot);
 
 /// The drive as it would be without the mistake; nothing where that has an impossible row, or would
 /// be the same.
-[[nodiscard]] std::optional<MotionRows> drive_without(const ColumnMistake& mistake,
+[[nodiscard]] std::optional<MotionRows> drive_without(const OtherDriveMistake& mistake,
                                                       const MotionRows& drive, const Robot& robot);
 
 }  // namespace trussmap

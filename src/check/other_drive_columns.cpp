@@ -3,9 +3,9 @@
 //
 // Signs and places of a drive's columns: where the motion by the columns as recorded agrees with
 // another sensor by none of that one's own mistakes, and by one of the columns' agrees with all.
-#include "check/column_mistakes.hpp"
 #include "check/findings.hpp"
 #include "check/misfit.hpp"
+#include "check/other_drive_mistakes.hpp"
 #include "geometry/units.hpp"
 #include "text/number_text.hpp"
 
@@ -47,7 +47,7 @@ bool all_tell(const std::vector<Misfit>& first, const std::vector<Misfit>& secon
 }
 
 struct MistakeExplanation {
-  ColumnMistake mistake;
+  OtherDriveMistake mistake;
   double misfit = 0.0;  ///< of the witness that agrees least
 };
 
@@ -58,7 +58,7 @@ std::vector<MistakeExplanation> explanations(const Checked& checked, const Misfi
   std::vector<MistakeExplanation> result;
   const double limit = std::min(kFits, kBetter * misfit);
   double best = limit;
-  for (ColumnMistake& mistake : column_mistakes(*checked.robot)) {
+  for (OtherDriveMistake& mistake : other_drive_mistakes(*checked.robot)) {
     const std::optional<MotionRows> other = drive_without(mistake, drive, *checked.robot);
     if (!other) continue;
     const std::optional<std::vector<Misfit>> now = misfits_below(limit, recording, *other, frame);
@@ -102,7 +102,7 @@ bool steers_in_degrees(const Recording& recording, const Robot& robot) {
   return static_cast<double>(beyond) > kSome * static_cast<double>(steer->values.size());
 }
 
-void check_columns(Checked& checked) {
+void check_other_drive(Checked& checked) {
   if (checked.wrong.contains("left") || checked.wrong.contains("t")) return;
   const MotionRows& drive = checked.recording.drive;
   const MisfitFrame frame{checked.angle_unit, drive.start(), drive.t.back()};
