@@ -196,6 +196,48 @@ struct Explanations {
   double none_of_these = 0.0;         ///< probability of all other sets, that of no effect included
 };
 
+// ----------------------------------------
+// Coefficients that change.
+
+/// An effect's size over a while of driving.
+struct CoursePart {
+  std::size_t session = 0;  ///< place among the recordings
+  double from = 0.0;        ///< s, the recording's clock
+  double until = 0.0;       ///< s
+  double value = 0.0;       ///< as ChangingCoefficient::fitted
+  double sd = 0.0;
+};
+
+/// A coefficient that is not the same all the time, though the model has it so: tested against a
+/// step at an unknown moment and against a walk at random (criticism/coefficient_course.hpp).
+struct ChangingCoefficient {
+  enum class Form { step, walk };
+  Form form = Form::step;  ///< that explains more
+  Effect effect;           ///< as fitted, the same all the time
+  /// What values are of: the coefficient of an effect that has one, else a factor of all.
+  double fitted = 1.0;
+  double p_value = 1.0;        ///< times the forms and effects tried
+  double chi2_decrease = 0.0;  ///< that allowing for it takes away; of a walk its gain in -2 log
+                               ///< likelihood
+  // A step:
+  std::size_t session = 0;   ///< where it is: place among the recordings
+  std::string session_name;  ///< named only where there are several
+  bool between = false;      ///< before the first drive of that session
+  double t = 0.0;            ///< s, likeliest
+  double earliest = 0.0;     ///< s: with 95 % within; both in the session of the step
+  double latest = 0.0;       ///< s
+  double before = 0.0;
+  double before_sd = 0.0;
+  double after = 0.0;
+  double after_sd = 0.0;
+  /// A walk: standard deviation of what an hour of driving changes.
+  double per_root_hour = 0.0;
+  std::vector<CoursePart> course;  ///< of either form, in order of time
+  /// Slow variables that the course follows, closest first ("temperature_C", "t", "distance"):
+  /// with one of them nothing of the change is left to explain.
+  std::vector<std::string> goes_with;
+};
+
 struct Diagnosis {
   enum class Verdict { missing, nothing_missing, unexplained_misfit };
   Verdict verdict = Verdict::nothing_missing;
@@ -211,6 +253,8 @@ struct Diagnosis {
   HeldOutMetrics with_missing;    ///< predicted, with all that is missing added
   std::vector<Finding> findings;  ///< best first
   Explanations explanations;
+  /// Of the model's effects and of those that are missing, surest first.
+  std::vector<ChangingCoefficient> changing;
   std::vector<Unobservable> unobservable;
   std::vector<NoiseTest> noise;   ///< best explanation first
   std::vector<EventTest> events;  ///< likeliest first

@@ -99,6 +99,9 @@ struct Advice {
 /// "the left wheel said 3.1 cm too little at once, in the leg 12 -> 13 at t = 45.2 s".
 [[nodiscard]] std::string in_words(const EventTest& event);
 
+/// "wheelbase changes at t = 412 s (395 to 430 s): before, the wheelbase is ...; after, ...".
+[[nodiscard]] std::string in_words(const ChangingCoefficient& change);
+
 // Verdicts, as files have them.
 
 [[nodiscard]] std::string_view name_of(Status status);   ///< "cannot tell"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/diagnosis.hpp"
 
+#include "criticism/changing_coefficients.hpp"
 #include "criticism/constants_first.hpp"
 #include "criticism/data_lacks.hpp"
 #include "criticism/defence.hpp"
@@ -311,6 +312,15 @@ std::vector<Candidate> candidates_found(const DiagnosisRun& run) {
   return found;
 }
 
+/// Of the fit with all that is missing, which explains the recordings on average at least.
+void tell_changes(const FitState& fit, Diagnosis& result) {
+  constexpr double kChanges = 0.01;  // p: asked beside all else
+  result.changing = changing_coefficients(fit, kChanges);
+  if (result.changing.empty() || result.verdict != Diagnosis::Verdict::nothing_missing) return;
+  result.verdict = Diagnosis::Verdict::unexplained_misfit;
+  result.objection = Objection::change;
+}
+
 /// About a fit that may be believed.
 DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                              const Noise& stated, const DiagnoseOptions& options,
@@ -347,6 +357,7 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
     if (defended.otherwise) judge_by(std::move(*defended.otherwise));
   }
   explain(run.result, run.searched, under->fit, with);
+  tell_changes(*(with ? *with : under->fit).state, run.result);
   const Noise& asked_of = options.estimate_noise ? stated : fit.model.noise;
   FitAnswers answers;
   bool answered = under->noise.changed();  // the noise is not the model's any more

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "effects/place.hpp"
 #include "plot/fit_charts.hpp"
+#include "report/changing_effects.hpp"
 #include "report/diagnosis_tables.hpp"
 #include "report/fit_sections.hpp"
 #include "report/noise_verdict.hpp"
@@ -254,6 +255,8 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidenc
   PageSection maps = maps_section("Where legs end off", models, evidence.effects);
   if (place) page.sections.push_back(maps);
   if (!evidence.effects.empty()) page.sections.push_back(cause_section(sized, evidence));
+  PageSection changing = changing_section(diagnosis);
+  if (!changing.blocks.empty()) page.sections.push_back(std::move(changing));
   const bool noise_first = evidence.effects.empty() && noise_is_wrong(diagnosis);
   PageSection noise =
       noise_first ? noise_section(given, diagnosis.under->noise) : noise_section(models);

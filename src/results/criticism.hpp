@@ -226,6 +226,48 @@ inline constexpr auto kDescribed<EffectChance> = described(
     share("probability", &EffectChance::probability,
           "that it, or one that looks like it, is part of the explanation"));
 
+template <>
+inline constexpr auto kDescribed<CoursePart> = described(
+    field("recording", &CoursePart::session, "place among the recordings, from 0 on"),
+    field("from_t", &CoursePart::from, "s"), field("until_t", &CoursePart::until, "s"),
+    field("value", &CoursePart::value, "of the coefficient; a factor where there are several"),
+    field("sd", &CoursePart::sd, "its standard error"));
+
+/// A value of a change that is a step; none of a walk.
+template <auto kMember>
+[[nodiscard]] auto of_step(const ChangingCoefficient& change) {
+  return change.form == ChangingCoefficient::Form::step ? std::optional(change.*kMember)
+                                                        : std::nullopt;
+}
+
+template <>
+inline constexpr auto kDescribed<ChangingCoefficient> = described(
+    keys_of("effect", &ChangingCoefficient::effect),
+    field(
+        "form",
+        [](const ChangingCoefficient& one) {
+          return one.form == ChangingCoefficient::Form::step ? "step" : "walk";
+        },
+        "what explains more of the change: one step, or a walk at random")
+        .one_of("step | walk"),
+    field("fitted", &ChangingCoefficient::fitted, "the same all the time, as the model has it"),
+    share("p_value", &ChangingCoefficient::p_value, "of no change, times all that was tried"),
+    field("chi2_decrease", &ChangingCoefficient::chi2_decrease,
+          "that allowing for it takes away (a walk: of -2 log likelihood)"),
+    field("recording", of_step<&ChangingCoefficient::session>, "of a step: place, from 0 on"),
+    field("t", of_step<&ChangingCoefficient::t>, "s, of a step"),
+    field("earliest_t", of_step<&ChangingCoefficient::earliest>, "s, of a step, 95 %"),
+    field("latest_t", of_step<&ChangingCoefficient::latest>, "s, likewise"),
+    field("before", of_step<&ChangingCoefficient::before>, "value before a step"),
+    field("before_sd", of_step<&ChangingCoefficient::before_sd>, "its standard error"),
+    field("after", of_step<&ChangingCoefficient::after>, "value after it"),
+    field("after_sd", of_step<&ChangingCoefficient::after_sd>, "its standard error"),
+    field("course", &ChangingCoefficient::course, "in order of time"),
+    field("goes_with", &ChangingCoefficient::goes_with,
+          "slow variables that explain all of the change, closest first"),
+    field(
+        "in_words", [](const ChangingCoefficient& one) { return in_words(one); }, kInWords));
+
 /// The noise that a diagnosis goes by; nullptr where none was estimated.
 [[nodiscard]] inline const FittedNoise* noise_of(const Diagnosis& result) {
   return result.under ? &result.under->noise : nullptr;
@@ -254,6 +296,8 @@ inline constexpr auto kDescribed<Diagnosis> = described(
           "of being part of the explanation, likeliest first, from 0.01 on"),
     share("probability_otherwise", through(&Diagnosis::explanations, &Explanations::none_of_these),
           "of all sets that are not listed"),
+    field("changing", &Diagnosis::changing,
+          "effects of the model, and missing ones, whose coefficients change, surest first"),
     field("noise", &Diagnosis::noise,
           "laws that explain what errors there are beyond what the model states, best first"),
     field("noise_estimated", noise_of, "by which all is judged; null with --stated-noise"),

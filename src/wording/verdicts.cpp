@@ -93,6 +93,12 @@ namespace {
 constexpr const char* kNoNoise =
     "something lasts that is not noise: it would have to be larger than is sought";
 
+/// "the coefficient of wheelbase is not the same all the time".
+std::string change_in_words(const Diagnosis& diagnosis) {
+  return fmt::format("the coefficient of {} is not the same all the time",
+                     name_in_words(diagnosis.changing.front().effect));
+}
+
 }  // namespace
 
 std::string objection_in_words(const Comparison& result) {
@@ -112,6 +118,7 @@ std::string objection_in_words(const Comparison& result) {
              (result.trends.empty() ? std::string() : goes_with(result.trends.front()));
     case Objection::noise:
       return kNoNoise;
+    case Objection::change:  // asked by a diagnosis alone
     case Objection::effect:
       break;
   }
@@ -121,6 +128,7 @@ std::string objection_in_words(const Comparison& result) {
 }
 
 std::string objection_in_words(const Diagnosis& diagnosis, const Comparison& result) {
+  if (diagnosis.objection == Objection::change) return change_in_words(diagnosis);
   return diagnosis.objection == Objection::noise ? kNoNoise : objection_in_words(result);
 }
 
@@ -158,6 +166,7 @@ std::string verdict_of_all(const Diagnosis& result) {
                       "tried explains it",
                       result.tried);
   }
+  if (result.objection == Objection::change) return text + ": " + change_in_words(result);
   if (result.objection == Objection::noise) {
     return text +
            fmt::format(": {}, and none of {} effects tried explains it", kNoNoise, result.tried);

@@ -1,0 +1,296 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/changing_coefficients.hpp"
+
+#include "criticism/coefficient_course.hpp"
+#include "geometry/index.hpp"
+#include "statistics/quadratic_forms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+namespace trussmap {
+namespace {
+
+constexpr double kForms = 2.0;  // tests per effect
+
+double dispersion(double chi2, double dof) {
+  return std::max(1.0, chi2 / std::max(1.0, dof));
+}
+
+struct Step {
+  std::size_t at = 0;  ///< first part after it
+  double score = 0.0;  ///< chi^2, phi = 1
+  double p_value = 1.0;
+  std::vector<double> scores;  ///< per part
+};
+
+/// `about`: without the constant.
+Step largest_step(const CoefficientCourse& about) {
+  const Eigen::Index n = about.s.size();
+  Step step;
+  step.scores.assign(static_cast<std::size_t>(n), 0.0);
+  std::vector<double> cosines;
+  Eigen::VectorXd before;  // G b of the step before that can be seen
+  double own_before = 0.0;
+  Eigen::VectorXd b = Eigen::VectorXd::Ones(n);
+  for (Eigen::Index k = 1; k < n; ++k) {
+    b[k - 1] = 0.0;
+    const Eigen::VectorXd Gb = about.G * b;
+    const double own = b.dot(Gb);
+    if (!(own > 1e-9 * about.G.trace())) continue;
+    const double sum = b.dot(about.s);
+    const double score = sum * sum / own;
+    step.scores[static_cast<std::size_t>(k)] = score;
+    if (own_before > 0.0) cosines.push_back(b.dot(before) / std::sqrt(own * own_before));
+    before = Gb;
+    own_before = own;
+    if (score <= step.score) continue;
+    step.score = score;
+    step.at = static_cast<std::size_t>(k);
+  }
+  step.p_value = largest_square_p_value(
+      step.score / dispersion(about.chi2 - step.score, about.dof - 1), cosines);
+  return step;
+}
+
+struct Walk {
+  double tau = 0.0;   ///< per root of an hour
+  double gain = 0.0;  ///< -2 log of the restricted likelihood that it takes away
+  double phi = 1.0;
+  double p_value = 1.0;
+};
+
+/// What walks make of the scores, in modes: w_k^2 ~ phi + tau^2 variances_k.
+struct Modes {
+  Eigen::VectorXd variances;
+  Eigen::VectorXd squares;
+
+  [[nodiscard]] double deviance(double phi, double tau2) const {
+    const Eigen::ArrayXd total = phi + tau2 * variances.array();
+    return (total.log() + squares.array() / total).sum();
+  }
+};
+
+Modes modes_of(const CoefficientCourse& about) {
+  const Eigen::Index n = about.s.size();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> seen(about.G);
+  const double least = 1e-9 * std::max(seen.eigenvalues().maxCoeff(), 0.0);
+  Eigen::Index first = 0;
+  while (first < n && seen.eigenvalues()[first] <= least) ++first;
+  const Eigen::Index count = n - first;
+  const Eigen::VectorXd root = seen.eigenvalues().tail(count).cwiseSqrt();
+  const Eigen::MatrixXd U = seen.eigenvectors().rightCols(count);
+  Eigen::MatrixXd W(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index k = 0; k < n; ++k) {
+      W(j, k) = std::min(about.parts[idx(j)].hours, about.parts[idx(k)].hours) -
+                about.parts.front().hours;
+    }
+  }
+  const Eigen::MatrixXd A = root.asDiagonal() * (U.transpose() * W * U) * root.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> walk(A);
+  Modes modes;
+  modes.variances = walk.eigenvalues().cwiseMax(0.0);
+  modes.squares =
+      (walk.eigenvectors().transpose() * root.cwiseInverse().asDiagonal() * U.transpose() * about.s)
+          .cwiseAbs2();
+  return modes;
+}
+
+/// `about`: without the constant.
+Walk likeliest_walk(const CoefficientCourse& about) {
+  const Modes modes = modes_of(about);
+  const double largest = modes.variances.size() > 0 ? modes.variances.maxCoeff() : 0.0;
+  Walk walk;
+  if (!(largest > 0.0)) return walk;
+  const double rest = about.chi2 - modes.squares.sum();  // that no course explains
+  const auto rest_dof = static_cast<double>(about.dof - modes.squares.size());
+  double best = 0.0;
+  // Over the sizes that the course could be told to have; phi of what each leaves.
+  constexpr int kSizes = 160;
+  for (int k = 0; k < kSizes; ++k) {
+    const double tau2 = std::exp(std::log(1e-2) + std::log(1e8) * k / (kSizes - 1)) / largest;
+    double phi = dispersion(about.chi2, about.dof);
+    for (int round = 0; round < 20; ++round) {
+      const Eigen::ArrayXd kept = phi / (phi + tau2 * modes.variances.array());
+      phi = dispersion(rest + (modes.squares.array() * kept).sum(), rest_dof + kept.sum());
+    }
+    const double null = dispersion(about.chi2, about.dof);
+    const double gain = modes.deviance(null, 0.0) - modes.deviance(phi, tau2) +
+                        (rest_dof * std::log(null) + rest / null) -
+                        (rest_dof * std::log(phi) + rest / phi);
+    if (gain <= best) continue;
+    best = gain;
+    walk.tau = std::sqrt(tau2);
+    walk.phi = phi;
+  }
+  walk.gain = best;
+  if (best == 0.0) walk.phi = dispersion(about.chi2, about.dof);
+  walk.p_value = quadratic_form_p_value(
+      modes.variances.dot(modes.squares) / walk.phi,
+      std::vector<double>(modes.variances.data(), modes.variances.data() + modes.variances.size()));
+  return walk;
+}
+
+/// Deviations from the fitted coefficient as the walk has them, and their covariance. `all`: with
+/// the constant.
+struct Estimate {
+  Eigen::VectorXd value;
+  Eigen::MatrixXd covariance;
+};
+
+Estimate estimate(const CoefficientCourse& all, const Walk& walk) {
+  const Eigen::Index n = all.s.size();
+  Eigen::MatrixXd P = all.G / walk.phi;
+  for (Eigen::Index k = 1; k < n; ++k) {
+    const double hours = std::max(all.parts[idx(k)].hours - all.parts[idx(k - 1)].hours, 1e-9);
+    const double stiff = 1.0 / (walk.tau * walk.tau * hours);
+    P(k, k) += stiff;
+    P(k - 1, k - 1) += stiff;
+    P(k, k - 1) -= stiff;
+    P(k - 1, k) -= stiff;
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> solver(P);
+  return {-solver.solve(all.s) / walk.phi, solver.solve(Eigen::MatrixXd::Identity(n, n))};
+}
+
+/// Two values instead of one; their covariance.
+Estimate estimate(const CoefficientCourse& all, const Step& step) {
+  const Eigen::Index n = all.s.size();
+  Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(n, 2);
+  for (Eigen::Index k = 0; k < n; ++k) sides(k, idx(k) < step.at ? 0 : 1) = 1.0;
+  const Eigen::MatrixXd G = sides.transpose() * all.G * sides;
+  const Eigen::MatrixXd inverse = G.inverse();
+  const double phi = dispersion(all.chi2 - step.score, all.dof - 1);
+  return {-inverse * (sides.transpose() * all.s), phi * inverse};
+}
+
+/// From the first to the last part within 95 % of the step's likelihood, in its session.
+void tell_when(const CoefficientCourse& all, const Step& step, ChangingCoefficient& change) {
+  const double phi = dispersion(all.chi2 - step.score, all.dof - 1);
+  double sum = 0.0;
+  std::vector<double> weights;
+  for (const double score : step.scores) {
+    weights.push_back(score > 0.0 ? std::exp(0.5 * (score - step.score) / phi) : 0.0);
+    sum += weights.back();
+  }
+  std::size_t low = step.at;
+  std::size_t high = step.at;
+  double within = weights[step.at];
+  while (within < 0.95 * sum) {
+    const bool lower =
+        low > 1 && (high + 1 >= weights.size() || weights[low - 1] >= weights[high + 1]);
+    if (!lower && high + 1 >= weights.size()) break;
+    within += lower ? weights[--low] : weights[++high];
+  }
+  const DrivePart& after = all.parts[step.at];
+  change.session = after.session;
+  change.between = step.at > 0 && all.parts[step.at - 1].session != after.session;
+  const auto begin_of = [&](std::size_t part) {  // of the gap before it
+    return part > 0 && all.parts[part - 1].session == all.parts[part].session
+               ? all.parts[part - 1].until
+               : all.parts[part].from;
+  };
+  change.t = 0.5 * (begin_of(step.at) + after.from);
+  while (all.parts[low].session != after.session) ++low;
+  while (all.parts[high].session != after.session) --high;
+  change.earliest = begin_of(low);
+  change.latest = all.parts[high].from;
+}
+
+bool is_left(const CoefficientCourse& about, double level) {
+  return kForms * std::min(largest_step(about).p_value, likeliest_walk(about).p_value) < level;
+}
+
+std::vector<std::string> followed(const CoefficientCourse& about, const FitState& fit) {
+  constexpr double kLeft = 0.05;
+  std::vector<std::pair<double, std::string>> explaining;
+  for (auto& [name, means] : variables_over(about, fit)) {
+    const Eigen::VectorXd centred = means.array() - means.mean();
+    const CoefficientCourse without = beside(centred / centred.norm(), about);
+    if (without.dof == about.dof || is_left(without, kLeft)) continue;
+    explaining.emplace_back(without.chi2, name);
+  }
+  std::sort(explaining.begin(), explaining.end());
+  std::vector<std::string> names;
+  for (auto& [chi2, name] : explaining) names.push_back(std::move(name));
+  return names;
+}
+
+/// Whether its coefficients are the same in all sessions, and fitted.
+bool may_change(const FitState& fit, std::size_t effect) {
+  const Effect& one = fit.model.effects[effect];
+  return one.coefficients.size() == one.shape.size() && effect < fit.effects.size() &&
+         fit.effects[effect].not_fitted.empty();
+}
+
+void tell_course(const CoefficientCourse& all, const Step& step, const Walk& walk,
+                 ChangingCoefficient& change) {
+  const bool steps = change.form == ChangingCoefficient::Form::step;
+  const Estimate told = steps ? estimate(all, step) : estimate(all, walk);
+  const auto value = [&](Eigen::Index k) { return change.fitted + told.value[k]; };
+  const auto sd = [&](Eigen::Index k) { return std::sqrt(std::max(0.0, told.covariance(k, k))); };
+  if (steps) {
+    change.before = value(0);
+    change.before_sd = sd(0);
+    change.after = value(1);
+    change.after_sd = sd(1);
+    tell_when(all, step, change);
+  }
+  for (std::size_t k = 0; k < all.parts.size(); ++k) {
+    const DrivePart& part = all.parts[k];
+    const auto at = steps ? (k < step.at ? 0 : 1) : static_cast<Eigen::Index>(k);
+    change.course.push_back({part.session, part.from, part.until, value(at), sd(at)});
+  }
+}
+
+}  // namespace
+
+std::vector<ChangingCoefficient> changing_coefficients(const FitState& fit, double level) {
+  const ScoreTest tests(fit);
+  std::vector<ChangingCoefficient> result;
+  double tried = 0.0;
+  for (std::size_t e = 0; e + fit.common_errors < fit.model.effects.size(); ++e) {
+    if (!may_change(fit, e)) continue;
+    const Effect& effect = fit.model.effects[e];
+    const std::optional<CoefficientCourse> all = course_of(e, fit, tests);
+    if (!all) continue;
+    tried += kForms;
+    const CoefficientCourse about = about_constant(*all);
+    const Step step = largest_step(about);
+    const Walk walk = likeliest_walk(about);
+    ChangingCoefficient change;
+    change.effect = effect;
+    if (effect.coefficients.size() == 1) change.fitted = effect.coefficients.front();
+    change.p_value = std::min(step.p_value, walk.p_value);
+    if (!(change.p_value < level)) continue;
+    const double places = static_cast<double>(all->parts.size());
+    const double by_step =
+        step.score / dispersion(about.chi2 - step.score, about.dof - 1) - 2.0 * std::log(places);
+    change.form = by_step > walk.gain || walk.gain == 0.0 ? ChangingCoefficient::Form::step
+                                                          : ChangingCoefficient::Form::walk;
+    const bool steps = change.form == ChangingCoefficient::Form::step;
+    change.chi2_decrease = steps ? step.score : walk.gain;
+    if (!steps) change.per_root_hour = walk.tau;
+    tell_course(*all, step, walk, change);
+    change.goes_with = followed(about, fit);
+    if (fit.recordings.size() > 1) change.session_name = fit.recordings[change.session].name;
+    result.push_back(std::move(change));
+  }
+  for (ChangingCoefficient& one : result) one.p_value = std::min(1.0, tried * one.p_value);
+  std::erase_if(result, [&](const ChangingCoefficient& one) { return !(one.p_value < level); });
+  std::stable_sort(result.begin(), result.end(),
+                   [](const ChangingCoefficient& a, const ChangingCoefficient& b) {
+                     return a.p_value < b.p_value;
+                   });
+  return result;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Is an effect's coefficient the same all the time? Asked of a fit that has it so, by what parts of
+// the driving say of it (coefficient_course.hpp: G, s).
+//
+//   step at k   z_k^2 = (sum over j >= k of s_j)^2 / (phi sum of G over both >= k); the largest of
+//               all, its tail by Davies' bound
+//   walk        d_(k+1) - d_k ~ N(0, tau^2 time between), score of tau^2: s'Ws, a quadratic form in
+//               normal errors, W_jk = min(time_j, time_k)
+//
+// Both are about the constant, which the fit has. phi: chi^2/dof of what the change leaves, at
+// least
+// 1. tau maximises the restricted likelihood; the course is the walk's expectation with its
+// covariance.
+#pragma once
+
+#include "fit/fit_state.hpp"
+#include "trussmap/diagnose.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+/// Those of the fit's effects whose coefficients change, the chance of naming any where none does
+/// at most `level`; surest first. Effects with coefficients that differ by session are passed over.
+[[nodiscard]] std::vector<ChangingCoefficient> changing_coefficients(const FitState& fit,
+                                                                     double level);
+
+}  // namespace trussmap
