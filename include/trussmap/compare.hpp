@@ -205,7 +205,8 @@ enum class Objection { none, chi2, trend, effect, noise, change };
 
 struct Comparison {
   Objection objection = Objection::none;
-  std::string missing;  ///< the effect that speaks against it
+  std::string missing;   ///< the effect that speaks against it
+  std::string changing;  ///< or that effect of the model whose coefficient changes while driving
   double chi2 = 0.0;
   int dof = 0;
   int coefficients = 0;          ///< estimated in this fit, each at the cost of a degree of freedom

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -60,10 +61,16 @@ Step largest_step(const CoefficientCourse& about) {
   return step;
 }
 
-struct Walk {
+/// A size that a walk may have.
+struct WalkSize {
   double tau = 0.0;   ///< per root of an hour
   double gain = 0.0;  ///< -2 log of the restricted likelihood that it takes away
   double phi = 1.0;
+};
+
+struct Walk {
+  WalkSize likeliest;
+  std::vector<WalkSize> sizes;  ///< equally far apart on a logarithmic scale
   double p_value = 1.0;
 };
 
@@ -112,29 +119,24 @@ Walk likeliest_walk(const CoefficientCourse& about) {
   if (!(largest > 0.0)) return walk;
   const double rest = about.chi2 - modes.squares.sum();  // that no course explains
   const auto rest_dof = static_cast<double>(about.dof - modes.squares.size());
-  double best = 0.0;
-  // Over the sizes that the course could be told to have; phi of what each leaves.
-  constexpr int kSizes = 160;
+  const double null = dispersion(about.chi2, about.dof);
+  walk.likeliest.phi = null;
+  constexpr int kSizes = 80;
   for (int k = 0; k < kSizes; ++k) {
     const double tau2 = std::exp(std::log(1e-2) + std::log(1e8) * k / (kSizes - 1)) / largest;
-    double phi = dispersion(about.chi2, about.dof);
+    double phi = null;  // of what this size leaves
     for (int round = 0; round < 20; ++round) {
       const Eigen::ArrayXd kept = phi / (phi + tau2 * modes.variances.array());
       phi = dispersion(rest + (modes.squares.array() * kept).sum(), rest_dof + kept.sum());
     }
-    const double null = dispersion(about.chi2, about.dof);
     const double gain = modes.deviance(null, 0.0) - modes.deviance(phi, tau2) +
                         (rest_dof * std::log(null) + rest / null) -
                         (rest_dof * std::log(phi) + rest / phi);
-    if (gain <= best) continue;
-    best = gain;
-    walk.tau = std::sqrt(tau2);
-    walk.phi = phi;
+    walk.sizes.push_back({std::sqrt(tau2), gain, phi});
+    if (gain > walk.likeliest.gain) walk.likeliest = walk.sizes.back();
   }
-  walk.gain = best;
-  if (best == 0.0) walk.phi = dispersion(about.chi2, about.dof);
   walk.p_value = quadratic_form_p_value(
-      modes.variances.dot(modes.squares) / walk.phi,
+      modes.variances.dot(modes.squares) / walk.likeliest.phi,
       std::vector<double>(modes.variances.data(), modes.variances.data() + modes.variances.size()));
   return walk;
 }
@@ -146,7 +148,7 @@ struct Estimate {
   Eigen::MatrixXd covariance;
 };
 
-Estimate estimate(const CoefficientCourse& all, const Walk& walk) {
+Estimate estimate(const CoefficientCourse& all, const WalkSize& walk) {
   const Eigen::Index n = all.s.size();
   Eigen::MatrixXd P = all.G / walk.phi;
   for (Eigen::Index k = 1; k < n; ++k) {
@@ -161,26 +163,87 @@ Estimate estimate(const CoefficientCourse& all, const Walk& walk) {
   return {-solver.solve(all.s) / walk.phi, solver.solve(Eigen::MatrixXd::Identity(n, n))};
 }
 
-/// Two values instead of one; their covariance.
-Estimate estimate(const CoefficientCourse& all, const Step& step) {
+/// Two values instead of one, from part `at` on the second; their covariance.
+Estimate estimate(const CoefficientCourse& all, std::size_t at, double phi) {
   const Eigen::Index n = all.s.size();
   Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(n, 2);
-  for (Eigen::Index k = 0; k < n; ++k) sides(k, idx(k) < step.at ? 0 : 1) = 1.0;
-  const Eigen::MatrixXd G = sides.transpose() * all.G * sides;
-  const Eigen::MatrixXd inverse = G.inverse();
-  const double phi = dispersion(all.chi2 - step.score, all.dof - 1);
+  for (Eigen::Index k = 0; k < n; ++k) sides(k, idx(k) < at ? 0 : 1) = 1.0;
+  const Eigen::MatrixXd inverse = (sides.transpose() * all.G * sides).inverse();
   return {-inverse * (sides.transpose() * all.s), phi * inverse};
 }
 
-/// From the first to the last part within 95 % of the step's likelihood, in its session.
-void tell_when(const CoefficientCourse& all, const Step& step, ChangingCoefficient& change) {
-  const double phi = dispersion(all.chi2 - step.score, all.dof - 1);
-  double sum = 0.0;
-  std::vector<double> weights;
+/// How likely the step is before each part, up to a factor.
+std::vector<double> likelihoods(const Step& step, double phi) {
+  std::vector<double> result;
+  result.reserve(step.scores.size());
   for (const double score : step.scores) {
-    weights.push_back(score > 0.0 ? std::exp(0.5 * (score - step.score) / phi) : 0.0);
-    sum += weights.back();
+    result.push_back(score > 0.0 ? std::exp(0.5 * (score - step.score) / phi) : 0.0);
   }
+  return result;
+}
+
+/// The mean of what several estimates say of each part, and their scatter.
+class Mixture {
+ public:
+  explicit Mixture(Eigen::Index parts)
+      : sum_(Eigen::ArrayXd::Zero(parts)), squares_(Eigen::ArrayXd::Zero(parts)) {}
+
+  void add(double weight, const Eigen::ArrayXd& value, const Eigen::ArrayXd& variance) {
+    weight_ += weight;
+    sum_ += weight * value;
+    squares_ += weight * (variance + value.square());
+  }
+  [[nodiscard]] double value(Eigen::Index part) const { return sum_[part] / weight_; }
+  [[nodiscard]] double sd(Eigen::Index part) const {
+    const double mean = value(part);
+    return std::sqrt(std::max(0.0, squares_[part] / weight_ - mean * mean));
+  }
+
+ private:
+  double weight_ = 0.0;
+  Eigen::ArrayXd sum_;
+  Eigen::ArrayXd squares_;
+};
+
+constexpr double kLeastWeight = 1e-4;
+
+/// Over all moments that the step may have.
+Mixture course_with(const CoefficientCourse& all, const Step& step, double phi) {
+  const Eigen::Index n = all.s.size();
+  Mixture mixture(n);
+  const std::vector<double> weights = likelihoods(step, phi);
+  for (std::size_t at = 1; at < weights.size(); ++at) {
+    if (weights[at] < kLeastWeight) continue;
+    const Estimate sides = estimate(all, at, phi);
+    Eigen::ArrayXd value(n);
+    Eigen::ArrayXd variance(n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const Eigen::Index side = idx(k) < at ? 0 : 1;
+      value[k] = sides.value[side];
+      variance[k] = sides.covariance(side, side);
+    }
+    mixture.add(weights[at], value, variance);
+  }
+  return mixture;
+}
+
+/// Over all sizes that the walk may have.
+Mixture course_with(const CoefficientCourse& all, const Walk& walk) {
+  Mixture mixture(all.s.size());
+  for (const WalkSize& one : walk.sizes) {
+    const double weight = std::exp(0.5 * (one.gain - walk.likeliest.gain));
+    if (weight < kLeastWeight) continue;
+    const Estimate estimated = estimate(all, one);
+    mixture.add(weight, estimated.value.array(), estimated.covariance.diagonal().array());
+  }
+  return mixture;
+}
+
+/// From the first to the last part within 95 % of the step's likelihood, in its session.
+void tell_when(const CoefficientCourse& all, const Step& step, double phi,
+               ChangingCoefficient& change) {
+  const std::vector<double> weights = likelihoods(step, phi);
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   std::size_t low = step.at;
   std::size_t high = step.at;
   double within = weights[step.at];
@@ -231,30 +294,30 @@ bool may_change(const FitState& fit, std::size_t effect) {
          fit.effects[effect].not_fitted.empty();
 }
 
-void tell_course(const CoefficientCourse& all, const Step& step, const Walk& walk,
+void tell_step(const CoefficientCourse& all, const Step& step, double phi,
+               ChangingCoefficient& change) {
+  const Estimate sides = estimate(all, step.at, phi);
+  change.before = change.fitted + sides.value[0];
+  change.before_sd = std::sqrt(sides.covariance(0, 0));
+  change.after = change.fitted + sides.value[1];
+  change.after_sd = std::sqrt(sides.covariance(1, 1));
+  tell_when(all, step, phi, change);
+}
+
+void tell_course(const CoefficientCourse& all, const Mixture& mixture,
                  ChangingCoefficient& change) {
-  const bool steps = change.form == ChangingCoefficient::Form::step;
-  const Estimate told = steps ? estimate(all, step) : estimate(all, walk);
-  const auto value = [&](Eigen::Index k) { return change.fitted + told.value[k]; };
-  const auto sd = [&](Eigen::Index k) { return std::sqrt(std::max(0.0, told.covariance(k, k))); };
-  if (steps) {
-    change.before = value(0);
-    change.before_sd = sd(0);
-    change.after = value(1);
-    change.after_sd = sd(1);
-    tell_when(all, step, change);
-  }
   for (std::size_t k = 0; k < all.parts.size(); ++k) {
     const DrivePart& part = all.parts[k];
-    const auto at = steps ? (k < step.at ? 0 : 1) : static_cast<Eigen::Index>(k);
-    change.course.push_back({part.session, part.from, part.until, value(at), sd(at)});
+    const auto at = static_cast<Eigen::Index>(k);
+    change.course.push_back(
+        {part.session, part.from, part.until, change.fitted + mixture.value(at), mixture.sd(at)});
   }
 }
 
 }  // namespace
 
-std::vector<ChangingCoefficient> changing_coefficients(const FitState& fit, double level) {
-  const ScoreTest tests(fit);
+std::vector<ChangingCoefficient> changing_coefficients(const FitState& fit, const ScoreTest& tests,
+                                                       double level) {
   std::vector<ChangingCoefficient> result;
   double tried = 0.0;
   for (std::size_t e = 0; e + fit.common_errors < fit.model.effects.size(); ++e) {
@@ -271,15 +334,18 @@ std::vector<ChangingCoefficient> changing_coefficients(const FitState& fit, doub
     if (effect.coefficients.size() == 1) change.fitted = effect.coefficients.front();
     change.p_value = std::min(step.p_value, walk.p_value);
     if (!(change.p_value < level)) continue;
-    const double places = static_cast<double>(all->parts.size());
+    const double phi = dispersion(about.chi2 - step.score, about.dof - 1);
     const double by_step =
-        step.score / dispersion(about.chi2 - step.score, about.dof - 1) - 2.0 * std::log(places);
-    change.form = by_step > walk.gain || walk.gain == 0.0 ? ChangingCoefficient::Form::step
-                                                          : ChangingCoefficient::Form::walk;
-    const bool steps = change.form == ChangingCoefficient::Form::step;
-    change.chi2_decrease = steps ? step.score : walk.gain;
-    if (!steps) change.per_root_hour = walk.tau;
-    tell_course(*all, step, walk, change);
+        step.score / phi - 2.0 * std::log(static_cast<double>(all->parts.size()));
+    const bool steps = by_step > walk.likeliest.gain || walk.likeliest.gain == 0.0;
+    change.form = steps ? ChangingCoefficient::Form::step : ChangingCoefficient::Form::walk;
+    change.chi2_decrease = steps ? step.score : walk.likeliest.gain;
+    if (steps) {
+      tell_step(*all, step, phi, change);
+    } else {
+      change.per_root_hour = walk.likeliest.tau;
+    }
+    tell_course(*all, steps ? course_with(*all, step, phi) : course_with(*all, walk), change);
     change.goes_with = followed(about, fit);
     if (fit.recordings.size() > 1) change.session_name = fit.recordings[change.session].name;
     result.push_back(std::move(change));

@@ -15,16 +15,21 @@
 // covariance.
 #pragma once
 
-#include "fit/fit_state.hpp"
+#include "criticism/score_test.hpp"
 #include "trussmap/diagnose.hpp"
 
 #include <vector>
 
 namespace trussmap {
 
+/// p below which a change is told: it is asked beside all else.
+inline constexpr double kChangeLevel = 0.01;
+
 /// Those of the fit's effects whose coefficients change, the chance of naming any where none does
 /// at most `level`; surest first. Effects with coefficients that differ by session are passed over.
+/// `tests`: of this fit.
 [[nodiscard]] std::vector<ChangingCoefficient> changing_coefficients(const FitState& fit,
-                                                                     double level);
+                                                                     const ScoreTest& tests,
+                                                                     double level = kChangeLevel);
 
 }  // namespace trussmap

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/comparison.hpp"
 
+#include "criticism/changing_coefficients.hpp"
 #include "criticism/data_lacks.hpp"
 #include "criticism/effect_search.hpp"
 #include "criticism/misfits.hpp"
@@ -64,7 +65,15 @@ Comparison compare(const std::vector<DrivenRecording>& recordings, const ModelFi
   result.objection = misfit_of(result.p_value, result.trends, options.level);
   if (result.objection != Objection::none) return result;
   result.missing = known.missing ? *known.missing : missing_effect(state, tests, options.level);
-  if (!result.missing.empty()) result.objection = Objection::effect;
+  if (!result.missing.empty()) {
+    result.objection = Objection::effect;
+    return result;
+  }
+  const std::vector<ChangingCoefficient> changing = changing_coefficients(state, tests);
+  if (!changing.empty()) {
+    result.objection = Objection::change;
+    result.changing = changing.front().effect.name;
+  }
   return result;
 }
 

@@ -312,10 +312,36 @@ std::vector<Candidate> candidates_found(const DiagnosisRun& run) {
   return found;
 }
 
-/// Of the fit with all that is missing, which explains the recordings on average at least.
-void tell_changes(const FitState& fit, Diagnosis& result) {
-  constexpr double kChanges = 0.01;  // p: asked beside all else
-  result.changing = changing_coefficients(fit, kChanges);
+/// Whether an effect is a course of time alone, as a coefficient that changes is.
+bool goes_with_time(const Effect& effect) {
+  return std::ranges::all_of(effect.shape, [](const Shape& one) {
+    return !one.variables().empty() && std::ranges::all_of(one.variables(), [](const auto& name) {
+      return name == "t" || name == "distance";
+    });
+  });
+}
+
+/// Of the fit with all that is missing, which explains the recordings on average at least. What is
+/// missing and goes with time may be such a change: then that of the fit without it is told.
+void tell_changes(const ModelFit& fit, const std::optional<ModelFit>& with, Diagnosis& result) {
+  constexpr double kAsMuch = 0.8;  // of what is missing
+  const auto of = [](const ModelFit& one) {
+    return changing_coefficients(*one.state, ScoreTest(*one.state));
+  };
+  result.changing = of(with ? *with : fit);
+  double courses = 0.0;
+  for (const Finding& one : result.findings) {
+    if (!one.joint.empty() && goes_with_time(one.effect)) courses += one.score;
+  }
+  if (courses > 0.0) {
+    for (ChangingCoefficient& one : of(fit)) {
+      if (one.chi2_decrease < kAsMuch * courses) continue;
+      std::erase_if(result.changing, [&](const ChangingCoefficient& other) {
+        return other.effect.name == one.effect.name;
+      });
+      result.changing.push_back(std::move(one));
+    }
+  }
   if (result.changing.empty() || result.verdict != Diagnosis::Verdict::nothing_missing) return;
   result.verdict = Diagnosis::Verdict::unexplained_misfit;
   result.objection = Objection::change;
@@ -357,7 +383,7 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
     if (defended.otherwise) judge_by(std::move(*defended.otherwise));
   }
   explain(run.result, run.searched, under->fit, with);
-  tell_changes(*(with ? *with : under->fit).state, run.result);
+  tell_changes(under->fit, with, run.result);
   const Noise& asked_of = options.estimate_noise ? stated : fit.model.noise;
   FitAnswers answers;
   bool answered = under->noise.changed();  // the noise is not the model's any more

@@ -87,7 +87,7 @@ PageSection changing_section(const Diagnosis& diagnosis) {
   PageSection section{"What changes while driving", {}};
   ChartRow charts;
   for (const ChangingCoefficient& one : diagnosis.changing) {
-    section.blocks.emplace_back(capitalised(in_words(one)) + ".");
+    section.blocks.emplace_back(typeset(capitalised(in_words(one)) + "."));
     charts.push_back(course_chart(one, charts.size()));
   }
   if (!charts.empty()) section.blocks.emplace_back(std::move(charts));

@@ -97,6 +97,7 @@ std::vector<std::string> missing_rows(const Comparison& result) {
                             : "Unknown: too little was measured to contradict any model."};
   }
   if (result.objection == Objection::effect) return {capitalised(result.missing) + "."};
+  if (result.objection == Objection::change) return {"A coefficient that changes."};
   return {"Something, and unknown what: compare looks for no effects, diagnose does."};
 }
 

@@ -96,6 +96,9 @@ ResultRows missing_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& evi
       rows.otherwise.push_back(std::move(sentence));
     }
   }
+  for (const ChangingCoefficient& one : diagnosis.changing) {
+    rows.otherwise.push_back(typeset(capitalised(in_words(one)) + "."));
+  }
   if (diagnosis.next_drive) {
     rows.next.push_back("To tell them apart, " + in_words(diagnosis.next_drive) + ".");
   }
@@ -153,9 +156,30 @@ ResultRows unexplained_rows(const Diagnosis& diagnosis, const DiagnosisEvidence&
   return rows;
 }
 
+/// Of a model that has what is there, but a coefficient of it changes.
+ResultRows changing_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
+  ResultRows rows;
+  const ChangingCoefficient& first = diagnosis.changing.front();
+  rows.missing = {capitalised(objection_in_words(diagnosis, evidence.given.comparison)) + "."};
+  for (const ChangingCoefficient& one : diagnosis.changing) {
+    rows.large.push_back(typeset(capitalised(in_words(one)) + "."));
+  }
+  rows.sure = {
+      fmt::format("Were it the same all the time, noise would show as much with "
+                  "probability {}.",
+                  chance_text(first.p_value))};
+  rows.next = {first.goes_with.empty()
+                   ? "Look for what happened then, and record it as a column: with it the change "
+                     "can be part of the model."
+                   : fmt::format("Put an effect that goes with {} into the model (trussmap add).",
+                                 first.goes_with.front())};
+  return rows;
+}
+
 ResultRows rows_on(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
   ResultRows rows =
       diagnosis.verdict == Diagnosis::Verdict::missing ? missing_rows(diagnosis, evidence)
+      : diagnosis.objection == Objection::change       ? changing_rows(diagnosis, evidence)
       : diagnosis.verdict == Diagnosis::Verdict::nothing_missing || is_slight_misfit(diagnosis)
           ? faultless_rows(diagnosis, evidence)
           : unexplained_rows(diagnosis, evidence);

@@ -93,10 +93,12 @@ namespace {
 constexpr const char* kNoNoise =
     "something lasts that is not noise: it would have to be larger than is sought";
 
-/// "the coefficient of wheelbase is not the same all the time".
+std::string changes_in_words(const std::string& name) {
+  return fmt::format("the coefficient of {} is not the same all the time", name);
+}
+
 std::string change_in_words(const Diagnosis& diagnosis) {
-  return fmt::format("the coefficient of {} is not the same all the time",
-                     name_in_words(diagnosis.changing.front().effect));
+  return changes_in_words(name_in_words(diagnosis.changing.front().effect));
 }
 
 }  // namespace
@@ -118,7 +120,9 @@ std::string objection_in_words(const Comparison& result) {
              (result.trends.empty() ? std::string() : goes_with(result.trends.front()));
     case Objection::noise:
       return kNoNoise;
-    case Objection::change:  // asked by a diagnosis alone
+    case Objection::change:
+      return "errors are small enough as a whole, but " + changes_in_words(result.changing) +
+             " (see trussmap diagnose)";
     case Objection::effect:
       break;
   }

@@ -51,7 +51,7 @@ double middle_of(const SimulatedRecording& one) {
 TEST(ChangingCoefficients, AConstantOneDoesNot) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
     const ModelFit fit = fitted(toured(seed, {turn("wheelbase", "1", 0.01)}));
-    EXPECT_TRUE(changing_coefficients(*fit.state, 0.001).empty()) << seed;
+    EXPECT_TRUE(changing_coefficients(*fit.state, ScoreTest(*fit.state), 0.001).empty()) << seed;
   }
 }
 
@@ -59,7 +59,8 @@ TEST(ChangingCoefficients, AStepIsToldWithItsMomentAndSizes) {
   const double t = middle_of(toured(21, {}));
   const ModelFit fit = fitted(toured(
       21, {turn("wheelbase", "1", 0.01), turn("later", "(t>" + std::to_string(t) + ")", 0.02)}));
-  const std::vector<ChangingCoefficient> found = changing_coefficients(*fit.state, 0.01);
+  const std::vector<ChangingCoefficient> found =
+      changing_coefficients(*fit.state, ScoreTest(*fit.state));
   ASSERT_EQ(found.size(), 1U);
   const ChangingCoefficient& one = found.front();
   EXPECT_EQ(one.effect.name, "wheelbase");
@@ -77,7 +78,8 @@ TEST(ChangingCoefficients, ASlowWaveIsAWalkWithinItsBand) {
   const double middle = middle_of(toured(31, {}));
   const std::string wave = "sin(" + std::to_string(3.0 / middle) + "*t)";
   const ModelFit fit = fitted(toured(31, {turn("wheelbase", "1", 0.01), turn("wave", wave, 0.02)}));
-  const std::vector<ChangingCoefficient> found = changing_coefficients(*fit.state, 0.01);
+  const std::vector<ChangingCoefficient> found =
+      changing_coefficients(*fit.state, ScoreTest(*fit.state));
   ASSERT_EQ(found.size(), 1U);
   const ChangingCoefficient& one = found.front();
   EXPECT_EQ(one.form, ChangingCoefficient::Form::walk);
@@ -93,7 +95,8 @@ TEST(ChangingCoefficients, WhatTheyGoWithIsNamed) {
   const SimulatedRecording one =
       toured(41, {turn("wheelbase", "1", 0.01), turn("warm", "temperature_C-20", 0.004)});
   const ModelFit fit = fitted(one);
-  const std::vector<ChangingCoefficient> found = changing_coefficients(*fit.state, 0.01);
+  const std::vector<ChangingCoefficient> found =
+      changing_coefficients(*fit.state, ScoreTest(*fit.state));
   ASSERT_EQ(found.size(), 1U);
   ASSERT_FALSE(found.front().goes_with.empty());
   EXPECT_EQ(found.front().goes_with.front(), "temperature_C");
