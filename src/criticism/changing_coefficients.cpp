@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -20,6 +21,10 @@ namespace trussmap {
 namespace {
 
 constexpr double kForms = 2.0;  // tests per effect
+constexpr int kSizes = 80;
+// Sizes of a walk that are tried, and of a step that are thought possible: from the least to the
+// largest, logarithm.
+constexpr double kLogSizes = 9.2;
 
 double dispersion(double chi2, double dof) {
   return std::max(1.0, chi2 / std::max(1.0, dof));
@@ -121,9 +126,8 @@ Walk likeliest_walk(const CoefficientCourse& about) {
   const auto rest_dof = static_cast<double>(about.dof - modes.squares.size());
   const double null = dispersion(about.chi2, about.dof);
   walk.likeliest.phi = null;
-  constexpr int kSizes = 80;
   for (int k = 0; k < kSizes; ++k) {
-    const double tau2 = std::exp(std::log(1e-2) + std::log(1e8) * k / (kSizes - 1)) / largest;
+    const double tau2 = std::exp(std::log(1e-2) + 2.0 * kLogSizes * k / (kSizes - 1)) / largest;
     double phi = null;  // of what this size leaves
     for (int round = 0; round < 20; ++round) {
       const Eigen::ArrayXd kept = phi / (phi + tau2 * modes.variances.array());
@@ -172,16 +176,6 @@ Estimate estimate(const CoefficientCourse& all, std::size_t at, double phi) {
   return {-inverse * (sides.transpose() * all.s), phi * inverse};
 }
 
-/// How likely the step is before each part, up to a factor.
-std::vector<double> likelihoods(const Step& step, double phi) {
-  std::vector<double> result;
-  result.reserve(step.scores.size());
-  for (const double score : step.scores) {
-    result.push_back(score > 0.0 ? std::exp(0.5 * (score - step.score) / phi) : 0.0);
-  }
-  return result;
-}
-
 /// The mean of what several estimates say of each part, and their scatter.
 class Mixture {
  public:
@@ -205,15 +199,53 @@ class Mixture {
   Eigen::ArrayXd squares_;
 };
 
+/// What may have happened: weights of the moments and sizes that were tried, sizes equally likely
+/// on a logarithmic scale.
+struct Chances {
+  std::vector<double> steps;  ///< per part
+  std::vector<double> walks;  ///< per size
+
+  [[nodiscard]] double of_step() const { return std::reduce(steps.begin(), steps.end()); }
+  [[nodiscard]] double of_walk() const { return std::reduce(walks.begin(), walks.end()); }
+};
+
+/// Whether a course is no step: what the step leaves changes, too.
+bool goes_on(const CoefficientCourse& about, const Step& step) {
+  Eigen::VectorXd side = Eigen::VectorXd::Ones(about.s.size());
+  side.head(static_cast<Eigen::Index>(step.at)).setZero();
+  const CoefficientCourse without = beside(side, about);
+  return std::min(largest_step(without).p_value, likeliest_walk(without).p_value) < kChangeLevel;
+}
+
+Chances chances_of(const CoefficientCourse& about, const Step& step, const Walk& walk, double phi) {
+  const double most = std::max(step.score / phi, walk.likeliest.gain);
+  const bool no_step = goes_on(about, step);
+  Chances chances;
+  for (const double score : step.scores) {
+    const double z2 = score / phi;
+    // The share of all sizes that are as likely.
+    const double width = z2 > 1.0 ? std::sqrt(2.0 * std::numbers::pi / z2) / kLogSizes : 0.0;
+    chances.steps.push_back(no_step ? 0.0
+                                    : width * std::exp(0.5 * (z2 - most)) /
+                                          static_cast<double>(step.scores.size()));
+  }
+  for (const WalkSize& one : walk.sizes) {
+    chances.walks.push_back(std::exp(0.5 * (one.gain - most)) /
+                            static_cast<double>(walk.sizes.size()));
+  }
+  return chances;
+}
+
 constexpr double kLeastWeight = 1e-4;
 
-/// Over all moments that the step may have.
-Mixture course_with(const CoefficientCourse& all, const Step& step, double phi) {
+/// Over all that may have happened.
+Mixture mixed_course(const CoefficientCourse& all, const Walk& walk, const Chances& chances,
+                     double phi) {
   const Eigen::Index n = all.s.size();
+  const double least = kLeastWeight * (chances.of_step() + chances.of_walk());
   Mixture mixture(n);
-  const std::vector<double> weights = likelihoods(step, phi);
-  for (std::size_t at = 1; at < weights.size(); ++at) {
-    if (weights[at] < kLeastWeight) continue;
+  for (std::size_t at = 1; at < chances.steps.size(); ++at) {
+    if (chances.steps[at] < least) continue;
     const Estimate sides = estimate(all, at, phi);
     Eigen::ArrayXd value(n);
     Eigen::ArrayXd variance(n);
@@ -222,28 +254,20 @@ Mixture course_with(const CoefficientCourse& all, const Step& step, double phi) 
       value[k] = sides.value[side];
       variance[k] = sides.covariance(side, side);
     }
-    mixture.add(weights[at], value, variance);
+    mixture.add(chances.steps[at], value, variance);
   }
-  return mixture;
-}
-
-/// Over all sizes that the walk may have.
-Mixture course_with(const CoefficientCourse& all, const Walk& walk) {
-  Mixture mixture(all.s.size());
-  for (const WalkSize& one : walk.sizes) {
-    const double weight = std::exp(0.5 * (one.gain - walk.likeliest.gain));
-    if (weight < kLeastWeight) continue;
-    const Estimate estimated = estimate(all, one);
-    mixture.add(weight, estimated.value.array(), estimated.covariance.diagonal().array());
+  for (std::size_t k = 0; k < walk.sizes.size(); ++k) {
+    if (chances.walks[k] < least) continue;
+    const Estimate walked = estimate(all, walk.sizes[k]);
+    mixture.add(chances.walks[k], walked.value.array(), walked.covariance.diagonal().array());
   }
   return mixture;
 }
 
 /// From the first to the last part within 95 % of the step's likelihood, in its session.
-void tell_when(const CoefficientCourse& all, const Step& step, double phi,
+void tell_when(const CoefficientCourse& all, const Step& step, const std::vector<double>& weights,
                ChangingCoefficient& change) {
-  const std::vector<double> weights = likelihoods(step, phi);
-  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const double sum = std::reduce(weights.begin(), weights.end());
   std::size_t low = step.at;
   std::size_t high = step.at;
   double within = weights[step.at];
@@ -262,10 +286,12 @@ void tell_when(const CoefficientCourse& all, const Step& step, double phi,
                : all.parts[part].from;
   };
   change.t = 0.5 * (begin_of(step.at) + after.from);
+  // It may lie within the part before or after.
+  if (low > 0) --low;
   while (all.parts[low].session != after.session) ++low;
   while (all.parts[high].session != after.session) --high;
-  change.earliest = begin_of(low);
-  change.latest = all.parts[high].from;
+  change.earliest = all.parts[low].from;
+  change.latest = all.parts[high].until;
 }
 
 bool is_left(const CoefficientCourse& about, double level) {
@@ -294,14 +320,14 @@ bool may_change(const FitState& fit, std::size_t effect) {
          fit.effects[effect].not_fitted.empty();
 }
 
-void tell_step(const CoefficientCourse& all, const Step& step, double phi,
+void tell_step(const CoefficientCourse& all, const Step& step, const Chances& chances, double phi,
                ChangingCoefficient& change) {
   const Estimate sides = estimate(all, step.at, phi);
   change.before = change.fitted + sides.value[0];
   change.before_sd = std::sqrt(sides.covariance(0, 0));
   change.after = change.fitted + sides.value[1];
   change.after_sd = std::sqrt(sides.covariance(1, 1));
-  tell_when(all, step, phi, change);
+  tell_when(all, step, chances.steps, change);
 }
 
 void tell_course(const CoefficientCourse& all, const Mixture& mixture,
@@ -335,17 +361,16 @@ std::vector<ChangingCoefficient> changing_coefficients(const FitState& fit, cons
     change.p_value = std::min(step.p_value, walk.p_value);
     if (!(change.p_value < level)) continue;
     const double phi = dispersion(about.chi2 - step.score, about.dof - 1);
-    const double by_step =
-        step.score / phi - 2.0 * std::log(static_cast<double>(all->parts.size()));
-    const bool steps = by_step > walk.likeliest.gain || walk.likeliest.gain == 0.0;
+    const Chances chances = chances_of(about, step, walk, phi);
+    const bool steps = chances.of_step() > chances.of_walk();
     change.form = steps ? ChangingCoefficient::Form::step : ChangingCoefficient::Form::walk;
     change.chi2_decrease = steps ? step.score : walk.likeliest.gain;
     if (steps) {
-      tell_step(*all, step, phi, change);
+      tell_step(*all, step, chances, phi, change);
     } else {
       change.per_root_hour = walk.likeliest.tau;
     }
-    tell_course(*all, steps ? course_with(*all, step, phi) : course_with(*all, walk), change);
+    tell_course(*all, mixed_course(*all, walk, chances, phi), change);
     change.goes_with = followed(about, fit);
     if (fit.recordings.size() > 1) change.session_name = fit.recordings[change.session].name;
     result.push_back(std::move(change));

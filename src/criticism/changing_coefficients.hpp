@@ -9,10 +9,9 @@
 //   walk        d_(k+1) - d_k ~ N(0, tau^2 time between), score of tau^2: s'Ws, a quadratic form in
 //               normal errors, W_jk = min(time_j, time_k)
 //
-// Both are about the constant, which the fit has. phi: chi^2/dof of what the change leaves, at
-// least
-// 1. tau maximises the restricted likelihood; the course is the walk's expectation with its
-// covariance.
+// Both are about the constant, which the fit has. phi is chi^2/dof of what the change leaves, at
+// least 1. What happened is the likelier of the two, and no step where that leaves a change. The
+// course is the mean of what all moments and sizes have, each by its likelihood.
 #pragma once
 
 #include "criticism/score_test.hpp"

@@ -321,26 +321,47 @@ bool goes_with_time(const Effect& effect) {
   });
 }
 
+/// Takes over those of other fits in place of what is known of the same effects.
+void take_over(std::vector<ChangingCoefficient> others,
+               std::vector<ChangingCoefficient>& changing) {
+  for (ChangingCoefficient& one : others) {
+    std::erase_if(changing, [&](const ChangingCoefficient& other) {
+      return other.effect.name == one.effect.name;
+    });
+    changing.push_back(std::move(one));
+  }
+}
+
 /// Of the fit with all that is missing, which explains the recordings on average at least. What is
-/// missing and goes with time may be such a change: then that of the fit without it is told.
-void tell_changes(const ModelFit& fit, const std::optional<ModelFit>& with, Diagnosis& result) {
+/// missing and goes with time may be such a change: then that of the fit without it is told. Noise
+/// that was estimated may hold a part of a change: whether there is one is asked beside it, what it
+/// is beside the noise that the model states.
+void tell_changes(const ModelFit& stated, const ModelFit& fit, const std::optional<ModelFit>& with,
+                  Diagnosis& result) {
   constexpr double kAsMuch = 0.8;  // of what is missing
   const auto of = [](const ModelFit& one) {
     return changing_coefficients(*one.state, ScoreTest(*one.state));
   };
   result.changing = of(with ? *with : fit);
   double courses = 0.0;
+  double others = 0.0;
   for (const Finding& one : result.findings) {
-    if (!one.joint.empty() && goes_with_time(one.effect)) courses += one.score;
+    if (one.joint.empty()) continue;
+    (goes_with_time(one.effect) ? courses : others) += one.score;
   }
-  if (courses > 0.0) {
-    for (ChangingCoefficient& one : of(fit)) {
-      if (one.chi2_decrease < kAsMuch * courses) continue;
-      std::erase_if(result.changing, [&](const ChangingCoefficient& other) {
+  const auto as_much = [&](std::vector<ChangingCoefficient> found) {
+    std::erase_if(found, [&](const auto& one) { return one.chi2_decrease < kAsMuch * courses; });
+    return found;
+  };
+  if (courses > 0.0) take_over(as_much(of(fit)), result.changing);
+  if (!result.changing.empty() && others == 0.0 && !(stated.model.noise == fit.model.noise)) {
+    std::vector<ChangingCoefficient> plain = of(stated);
+    std::erase_if(plain, [&](const ChangingCoefficient& one) {
+      return std::ranges::none_of(result.changing, [&](const ChangingCoefficient& other) {
         return other.effect.name == one.effect.name;
       });
-      result.changing.push_back(std::move(one));
-    }
+    });
+    take_over(std::move(plain), result.changing);
   }
   if (result.changing.empty() || result.verdict != Diagnosis::Verdict::nothing_missing) return;
   result.verdict = Diagnosis::Verdict::unexplained_misfit;
@@ -383,7 +404,7 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
     if (defended.otherwise) judge_by(std::move(*defended.otherwise));
   }
   explain(run.result, run.searched, under->fit, with);
-  tell_changes(under->fit, with, run.result);
+  tell_changes(fit, under->fit, with, run.result);
   const Noise& asked_of = options.estimate_noise ? stated : fit.model.noise;
   FitAnswers answers;
   bool answered = under->noise.changed();  // the noise is not the model's any more

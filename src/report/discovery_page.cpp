@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 
 #include "plot/fit_charts.hpp"
+#include "report/changing_effects.hpp"
 #include "report/diagnosis_tables.hpp"
 #include "report/fit_sections.hpp"
 #include "report/noise_verdict.hpp"
@@ -236,6 +237,8 @@ Page discovery_page(const Discovery& discovery, const DiscoveryEvidence& evidenc
   if (noise_alone) page.sections.push_back(noise);
   page.sections.push_back(
       maps_section("Where legs end off, model by model", models, evidence.effects));
+  PageSection changing = changing_section(discovery.last);
+  if (!changing.blocks.empty()) page.sections.push_back(std::move(changing));
   if (!noise_alone) page.sections.push_back(std::move(noise));
   page.sections.push_back(trend_section("What errors go with, in the model found",
                                         evidence.found.comparison, evidence.trends));

@@ -383,6 +383,8 @@ inline constexpr auto kDescribed<Discovery> = described(
         "verdict", [](const Discovery& one) { return verdict_of(one); }, "of the model found")
         .one_of("consistent | unexplained misfit"),
     field("effects", through(&Discovery::found, &ModelFit::effects), "of the model found"),
+    field("changing", through(&Discovery::last, &Diagnosis::changing),
+          "those of them whose coefficients change, surest first"),
     field(
         "noise_estimated", [](const Discovery& one) { return noise_of(one.last); },
         "by which all is judged; null with --stated-noise"),

@@ -9,8 +9,8 @@
 namespace trussmap {
 
 /// How likely sum_k weight_k z_k^2 of independent standard normal z_k exceeds `value`, by
-/// saddlepoint (Kuonen 1999, Biometrika 86), off by some per cent of itself. Weights below 0 count
-/// as 0; 1 where none is above.
+/// saddlepoint (Kuonen 1999, Biometrika 86), off by a tenth of itself at most. Weights below 0
+/// count as 0; 1 where none is above.
 [[nodiscard]] double quadratic_form_p_value(double value, const std::vector<double>& weights);
 
 /// How likely at most, max_k z_k^2 exceeds `value`, where the z_k are standard normal and each has

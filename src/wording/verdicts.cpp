@@ -238,6 +238,9 @@ std::string stop_in_words(const Discovery& result) {
     return std::string("nothing more is significant");
   }();
   if (result.consistent) return why;
+  if (result.last.objection == Objection::change) {
+    return why + ", but " + change_in_words(result.last);
+  }
   return why + (is_slight_misfit(result.last)
                     ? fmt::format(", but a slight misfit is not explained (noise alone makes as "
                                   "much in one of {:.0f} recordings)",

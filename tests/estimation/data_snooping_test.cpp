@@ -159,7 +159,6 @@ TEST(DataSnooping, RobustlyAWrongSightingMovesNoLandmarkOutOfItsEllipse) {
     const RecordingAdjustment fit = adjust(problem, {}, robust);
     ASSERT_EQ(fit.left_out.size(), 1U) << seed;
     EXPECT_EQ(problem.measurements[idx(fit.left_out.front())].source, one.wrong);
-    EXPECT_FALSE(fit.warnings.empty());
     const RecordingAdjustment right = adjust(make_problem({clean.recording}, clean.model));
     for (std::size_t k = 1; k < problem.landmarks.size(); ++k) {
       const Vector2 moved = fit.state.landmarks[k] - right.state.landmarks[k];

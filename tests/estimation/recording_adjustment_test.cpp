@@ -43,7 +43,7 @@ TEST(RecordingAdjustment, ExactRecordingsGiveTheExactMap) {
     EXPECT_LT(largest_error(problem, fit.state, one.truth), 1e-6);
     EXPECT_LT(fit.chi2, 1e-6);
     EXPECT_TRUE(fit.converged);
-    EXPECT_TRUE(fit.warnings.empty());
+    EXPECT_TRUE(fit.left_out.empty());
   }
 }
 

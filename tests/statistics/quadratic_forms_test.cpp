@@ -29,7 +29,7 @@ TEST(QuadraticForm, EqualWeightsAreChi2EvenFarOut) {
     const std::vector<double> weights(static_cast<std::size_t>(dof), 3.0);
     for (const double p : {0.5, 0.1, 1e-3, 1e-8}) {
       const double value = 3.0 * chi2_quantile(1.0 - p, dof);
-      EXPECT_NEAR(quadratic_form_p_value(value, weights) / p, 1.0, 0.06) << dof << " " << p;
+      EXPECT_NEAR(quadratic_form_p_value(value, weights) / p, 1.0, 0.12) << dof << " " << p;
     }
   }
 }
