@@ -374,6 +374,7 @@ void doubt(BuiltMap& built, const MapFitState& best, const std::vector<DrivenRec
                     std::back_inserter(built.warnings));
   doubt_shape(built, best);
   doubt_against_survey(built, model.noise);
+  doubt_against_truth(built, best.fit, recordings);
 }
 
 }  // namespace trussmap

@@ -94,7 +94,7 @@ std::string lateness(const std::vector<double>& late) {
   return one == other ? one : one + " to " + other;
 }
 
-std::string millimetres(double metres) {
+std::string thousandths(double metres) {
   return without_sign_of_nothing(fixed_text(1000.0 * metres, 1));
 }
 
@@ -104,8 +104,9 @@ std::string text(const TruthAlignment& truth) {
   for (const auto& [session, clock] : truth.clocks) late.push_back(clock.late);
   return fmt::format(
       "  truth: the point tracked is {} mm ahead and {} mm left of the axle's centre, its\n"
-      "  heading is off by {:.1f} mrad, its rows are {} at the start\n",
-      millimetres(truth.ahead), millimetres(truth.left), 1000.0 * truth.heading, lateness(late));
+      "  heading is off by {} mrad, its rows are {} at the start\n",
+      thousandths(truth.ahead), thousandths(truth.left), thousandths(truth.heading),
+      lateness(late));
 }
 
 std::string text(const FixAlignment& fixes) {
@@ -114,7 +115,7 @@ std::string text(const FixAlignment& fixes) {
   for (const auto& [session, one] : fixes.late) late.push_back(one);
   return fmt::format(
       "  fixes: of a point {} mm ahead and {} mm left of the axle's centre, stamped {}\n",
-      millimetres(fixes.ahead), millimetres(fixes.left), lateness(late));
+      thousandths(fixes.ahead), thousandths(fixes.left), lateness(late));
 }
 
 /// A few of them by what they say.

@@ -14,7 +14,7 @@ HANG = -1000  # status of a run that had to be stopped
 
 # Of libraries: what they say is of their insides.
 INSIDES = re.compile(r"json\.exception|parse error|Error while parsing|basic_string|vector::|map::at|"
-                     r"\bsto[id]\b|std::|bad_alloc|what\(\)|terminate called|sqlite|filesystem error|"
+                     r"\bsto[id]\b|std::|bad_alloc|what\(\)|terminate called|SQL logic|SQLITE_|filesystem error|"
                      r"iostream|CLI::|unordered_map|Assertion|runtime error|AddressSanitizer|"
                      r"cholmod|Eigen")
 
