@@ -7,7 +7,7 @@ Usage: tests/sweep/mutations.py [--command build/trussmap] [--runs 20000] [--see
                                 [--inputs ../shared/data/reports] [--keep DIR]
 
 Bytes, numbers, fields and lines of recordings, models, graphs, maps and logs are changed. Each run has to
-end by itself, within 20 s of processor and 2 GB, with status 0, 1 or 2, and where it refuses with one
+end by itself, within 180 s of processor and 2 GB, with status 0, 1 or 2, and where it refuses with one
 line in words of its own. What fails is kept in DIR. Status 1: something did.
 """
 import argparse
@@ -138,7 +138,7 @@ def main():
     parser.add_argument("--inputs", type=pathlib.Path, default=TOP.parent / "shared/data/reports")
     parser.add_argument("--keep", type=pathlib.Path)
     options = parser.parse_args()
-    trussmap = Command(options.command, seconds=20)
+    trussmap = Command(options.command, seconds=180)
     statuses, wrong = collections.Counter(), collections.Counter()
     with tempfile.TemporaryDirectory() as temporary:
         scratch = pathlib.Path(temporary)

@@ -28,6 +28,11 @@ NUMERIC = re.compile(r"^  --([\w-]+) (X|N|K|S|LENGTH|LENGTHS|N\|\w[\w|]*|PORT|(?
                      r"X,X\.\.\.|N,N\.\.\.|NxN|TIME,\.\.\.|K/N)(?:=| |$)", re.M)
 
 
+# What a refusal may speak of in place of the option: what comes of it.
+COMES_OF = {"--sighting-noise": "apart", "--spacing": "apart", "--min-drive": "leg", "--true-k": "a turn",
+            "--true-E-d": "wheel scale", "--scatter": "a turn"}
+
+
 class Sweep:
     def __init__(self, trussmap, scratch, every):
         self.trussmap = trussmap
@@ -63,6 +68,7 @@ class Sweep:
             if own_file and not re.search(r"\w+\.(toml|csv)\b", line):
                 return "names no file"
             words = [one for one in re.split(r"\W", named) if len(one) > 2]
+            words += [said for option, said in COMES_OF.items() if named.startswith(option)]
             if not own_file and not re.search(r"\w+\.(toml|csv|g2o)\b", line) and not any(
                     one.rstrip("s") in line for one in words):
                 return f"does not name {named}"
@@ -91,7 +97,7 @@ def sweep_options(sweep, inputs):
         calls[name] = [inputs.recording, "--model", inputs.fitted if name == "fit" else inputs.model]
     calls["convert"] = [inputs.map, "out.yaml", "--tag-size", 0.1]
     calls["apply"] += ["--out", "poses.csv"]
-    calls["fleet add"] = ["fleet.db", "R2", inputs.recording, "--model", inputs.model]
+    calls["fleet add"] = ["fleet.db", "R2", inputs.recording, "--model", inputs.model, "--replace"]
     calls["serve"] = [inputs.recording, "--model", inputs.model]
     for name, arguments in calls.items():
         words = name.split()
