@@ -96,8 +96,9 @@ void run_calibrate(const CalibrateOptions& options) {
                        results::json_text(results::WithConstants{report, &constants}));
   }
   if (options.page.wanted()) {
-    const Page page = truth_page({found, held.nominal, held.calibrated, calibration_verdict(held)},
-                                 subject_of(options.recordings, options.model));
+    const Page page =
+        truth_page({found, held.nominal, held.calibrated, calibration_verdict(found, held)},
+                   subject_of(options.recordings, options.model));
     add_page(files, with_drive(with_constants(page, constants), model.robot, recordings),
              options.page, recordings);
   }

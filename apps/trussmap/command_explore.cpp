@@ -60,6 +60,19 @@ void print_tours(const std::vector<results::ExploredTour>& tours, Laid laid) {
   if (both) fmt::print("\n  aligned: after the best rotation and translation\n");
 }
 
+/// A drive of months, and all the rows that it would take.
+void check_way(const ExploreOptions& options, double all_routes) {
+  constexpr double kMostWay = 1e6;  // m
+  constexpr double kMostTours = 1e4;
+  const double way = std::max(options.tours, 1.0) * all_routes;
+  if (way <= kMostWay && options.tours <= kMostTours) return;
+  throw UsageError(
+      fmt::format("explore: --tours {:g} of {:g} m of routes (--mesh, --spacing) are too far to "
+                  "drive, expected "
+                  "{:g} tours and {:g} m in all at most",
+                  options.tours, all_routes, kMostTours, kMostWay));
+}
+
 void run_explore(ExploreOptions options) {
   options.world.compass = !options.no_compass;
   const auto made = [&options] {
@@ -78,6 +91,7 @@ void run_explore(ExploreOptions options) {
   const LandmarkPositions truth = positions_of(world.plan());
   const Laid laid = options.world.compass ? Laid::as_it_is : Laid::aligned;
   const double all_routes = world.length_of_all_routes();
+  check_way(options, all_routes);
   std::vector<results::ExploredTour> tours;
   std::vector<ExplorationFrame> frames;
   int legs = 0;

@@ -4,6 +4,7 @@
 
 #include "path_checks.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +14,19 @@ namespace {
 
 Check check_of(const CLI::Validator& validator) {
   return {[validator](std::string& text) { return validator(text); }, validator.get_description()};
+}
+
+/// No option means a number without a size, and comparisons with one are all false.
+const CLI::Validator& finite() {
+  static const CLI::Validator validator(
+      [](std::string& text) {
+        double value = 0.0;
+        return CLI::detail::lexical_cast(text, value) && !std::isfinite(value)
+                   ? "'" + text + "' is not a finite number"
+                   : std::string();
+      },
+      "");
+  return validator;
 }
 
 }  // namespace
@@ -81,12 +95,12 @@ Option Command::add_option(const std::string& name, std::string& value,
 
 Option Command::add_option(const std::string& name, double& value,
                            const std::string& description) const {
-  return Option(app_->add_option(name, value, description));
+  return Option(app_->add_option(name, value, description)->check(finite()));
 }
 
 Option Command::add_option(const std::string& name, std::optional<double>& value,
                            const std::string& description) const {
-  return Option(app_->add_option(name, value, description));
+  return Option(app_->add_option(name, value, description)->check(finite()));
 }
 
 Option Command::add_option(const std::string& name, std::optional<std::string>& value,
@@ -106,7 +120,7 @@ Option Command::add_option(const std::string& name, std::uint64_t& value,
 
 Option Command::add_option(const std::string& name, std::vector<double>& values,
                            const std::string& description) const {
-  return Option(app_->add_option(name, values, description));
+  return Option(app_->add_option(name, values, description)->check(finite()));
 }
 
 Option Command::add_option(const std::string& name, std::vector<std::string>& values,

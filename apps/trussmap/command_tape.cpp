@@ -108,7 +108,8 @@ void run_tape(const TapeCommandOptions& options) {
     constants = taped_constants(model, found);
     set_taped(model, found);
   } catch (const std::invalid_argument& error) {
-    throw UsageError(options.tape.model + ": " + error.what());
+    throw UsageError((options.tape.model.empty() ? "tape" : options.tape.model) + ": " +
+                     error.what());
   }
   Files files;
   if (!options.tape.out.empty()) files.emplace_back(options.tape.out, format_model(model));

@@ -123,7 +123,8 @@ std::vector<SquareRound> all_rounds(const UmbmarkOptions& options, const Model& 
   try {
     in_force = geometry_errors(model);
   } catch (const std::invalid_argument& error) {
-    throw UsageError(options.tape.model + ": " + error.what());
+    throw UsageError((options.tape.model.empty() ? "umbmark" : options.tape.model) + ": " +
+                     error.what());
   }
   const double wheelbase = model.robot.wheelbase;
   const SquareMethod method = method_of(options);

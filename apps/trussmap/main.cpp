@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <stdexcept>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -71,16 +72,18 @@ void check_command(const CLI::App& app, int argc, char** argv) {
 
 /// With the first thing that the command was given, which mostly is what was read.
 std::string out_of_memory(const CLI::App& app) {
+  std::string name;
   std::string what;
   for (const CLI::App* command : app.get_subcommands()) {
+    name = command->get_name();
     for (const CLI::Option* option : command->get_options()) {
       if (!option->get_positional() || option->count() == 0) continue;
       for (const std::string& one : option->results()) what += (what.empty() ? "" : ", ") + one;
       break;
     }
   }
-  return (what.empty() ? std::string() : what + ": ") +
-         "there is not enough memory for it, expected less data or a larger machine";
+  return (what.empty() ? name : what) +
+         ": there is not enough memory for it, expected less data or a larger machine";
 }
 
 /// Large matrices are made and dropped by the thousand: their memory is kept instead of being
@@ -156,6 +159,8 @@ int run(int argc, char** argv) {
   } catch (const std::filesystem::filesystem_error& error) {  // an output folder, mostly
     return complain(in_words(error), kBadInput);
   } catch (const std::bad_alloc&) {
+    return complain(out_of_memory(app), kFailed);
+  } catch (const std::length_error&) {  // more than any machine has
     return complain(out_of_memory(app), kFailed);
   } catch (const std::exception& error) {
     return complain(error, kFailed);

@@ -109,6 +109,16 @@ Check zero_or_more() {
           ""};
 }
 
+Check length_to_place() {
+  return {[](const std::string& text) -> std::string {
+            const std::optional<double> value = finite_number(text);
+            return value && std::abs(*value) <= kLongest
+                       ? ""
+                       : "'" + text + "' is not a number from -10000 to 10000";
+          },
+          ""};
+}
+
 Check whole_number(std::uint64_t least) {
   return {[least](const std::string& text) {
             return is_whole_number(text, least) ? ""

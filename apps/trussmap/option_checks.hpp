@@ -25,6 +25,9 @@ namespace trussmap::app {
 /// A length of a robot, as model files may have it: 0.1 mm to 10 km.
 [[nodiscard]] Check length_of_robot();
 
+/// Where something sits on a robot: a number of at most 10^4 in size.
+[[nodiscard]] Check length_to_place();
+
 /// A number from 0 to 1e15.
 [[nodiscard]] Check zero_or_more();
 

@@ -195,6 +195,7 @@ void add_sensor_options(const Command& command, SimulateOptions& options) {
     command.add_option(name, place, help)
         .delimiter(',')
         .expected(count)
+        .check(length_to_place())
         .type_name(count == 2 ? "X,Y" : "X,Y,YAW");
   };
   add_place("--sensor", options.sensor, 3,

@@ -228,6 +228,12 @@ struct Comparison {
 
   [[nodiscard]] bool consistent() const { return objection == Objection::none; }
 
+  /// Whether a trend speaks against the model. None does where the model is consistent: the verdict
+  /// asks two questions, chi^2 and trends, and takes half of the level for each.
+  [[nodiscard]] bool tells(const Trend& trend) const {
+    return trend.p_adjusted < level && !consistent();
+  }
+
   /// Whether measurements are left over that could contradict a model: without, being consistent
   /// says nothing.
   [[nodiscard]] bool tested() const { return dof >= kFewestTests; }

@@ -117,8 +117,10 @@ struct TestedDrives {
                                            const CalibrationValidation& held,
                                            const std::optional<TestedDrives>& test = {},
                                            TextStyle style = TextStyle::plain);
-/// What the held-out legs say of a calibration, in a sentence: a page's verdict.
-[[nodiscard]] std::string calibration_verdict(const CalibrationValidation& held);
+/// What the held-out legs say of a calibration, and whether it explains its recordings, in a
+/// sentence: a page's verdict.
+[[nodiscard]] std::string calibration_verdict(const WheelCalibration& found,
+                                              const CalibrationValidation& held);
 
 /// Constants to paste: lines of TOML, then those of other programs; nothing where there are none.
 [[nodiscard]] std::string constants_text(const RobotConstants& constants,

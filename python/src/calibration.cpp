@@ -127,9 +127,9 @@ std::string text(const CalibrationResult& self) {
 }
 
 Page page(const CalibrationResult& self) {
-  const Page page = truth_page(
-      {self.found, self.held.nominal, self.held.calibrated, calibration_verdict(self.held)},
-      self.subject);
+  const Page page = truth_page({self.found, self.held.nominal, self.held.calibrated,
+                                calibration_verdict(self.found, self.held)},
+                               self.subject);
   return with_drive(with_constants(page, constants(self)), self.robot, *self.recordings);
 }
 
@@ -193,7 +193,7 @@ void add_calibration(py::module_& module) {
           "m, of the same legs by the model given.")
       .def("table", table, "A list of dicts: constant, value, sd, unit.")
       .def("__repr__", [](const CalibrationResult& self) {
-        return "<trussmap.Calibration: " + calibration_verdict(self.held) + ">";
+        return "<trussmap.Calibration: " + calibration_verdict(self.found, self.held) + ">";
       });
   module.def("calibrate", run_calibrate, py::arg("recordings"), py::arg("model"), py::kw_only(),
              py::arg("test") = py::tuple(), py::arg("without") = std::vector<std::string>(),

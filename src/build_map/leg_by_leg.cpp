@@ -3,6 +3,7 @@
 #include "build_map/leg_by_leg.hpp"
 
 #include "build_map/mapped_session.hpp"
+#include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/gate.hpp"
 
@@ -49,7 +50,8 @@ BuiltMap map_leg_by_leg(const std::vector<SightedDrive>& sessions, const LegByLe
   result.new_landmarks = builder.landmarks() - before;
   if (result.legs == 0) {
     throw InputError(sessions.front().recording().name, 0,
-                     "no leg, expected a drive from one landmark to another");
+                     "no leg, expected a drive from one landmark to another, " +
+                         short_text(options.build.min_drive) + " m or more of driven path");
   }
   return result;
 }

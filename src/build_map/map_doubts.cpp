@@ -73,18 +73,14 @@ int sightings_of(const RecordingProblem& problem) {
       std::count_if(problem.measurements.begin(), problem.measurements.end(), is_sighting));
 }
 
-std::string signed_text(double value, int digits) {
-  return (value < 0.0 ? "-" : "+") + fixed_text(std::abs(value), digits);
-}
-
 std::string words_of(const FreedError& one) {
   const double value = one.effect.coefficients.front();
   const double sd = one.sd.front();
   const auto percent = [&] {
-    return signed_text(100.0 * value, 2) + " +- " + fixed_text(100.0 * sd, 2) + " %";
+    return signed_fixed_text(100.0 * value, 2) + " +- " + fixed_text(100.0 * sd, 2) + " %";
   };
   if (facts_of(one.effect.channel).unit == "rad/s") {
-    return one.effect.name + " " + signed_text(60.0 * value / kDegree, 1) + " +- " +
+    return one.effect.name + " " + signed_fixed_text(60.0 * value / kDegree, 1) + " +- " +
            fixed_text(60.0 * sd / kDegree, 1) + " deg/min";
   }
   if (one.effect.channel == Channel::compass) {
@@ -191,10 +187,10 @@ void doubt_fit(BuiltMap& built, const MapFitState& best) {
   }
   if (best.antenna) {
     const Mounting& at = best.antenna->place;
-    warnings.push_back(joined("the antenna of the fixes sits ", signed_text(at.x, 3),
+    warnings.push_back(joined("the antenna of the fixes sits ", signed_fixed_text(at.x, 3),
                               " m ahead of "
                               "the axle's centre and ",
-                              signed_text(at.y, 3), " m to its left (+- ",
+                              signed_fixed_text(at.y, 3), " m to its left (+- ",
                               fixed_text(best.antenna->sd, 3),
                               "), by the sightings, and is taken "
                               "to be there: the model has it at the centre; state [robot.antenna], "
@@ -218,7 +214,7 @@ void doubt_fit(BuiltMap& built, const MapFitState& best) {
                        "discover");
   }
   if (fit.p_value < kImplausible && built.quality.dispersion > kNoticeable) {
-    warnings.push_back("errors are " + fixed_text(std::sqrt(built.quality.dispersion), 1) +
+    warnings.push_back("errors are " + times_text(std::sqrt(built.quality.dispersion)) +
                        " times what the model's noise allows: its noise is too small, or an effect "
                        "is missing; run discover");
   }
@@ -378,6 +374,7 @@ void doubt(BuiltMap& built, const MapFitState& best, const std::vector<DrivenRec
                     std::back_inserter(built.warnings));
   doubt_shape(built, best);
   doubt_against_survey(built, model.noise);
+  doubt_against_truth(built, best.fit, recordings);
 }
 
 }  // namespace trussmap

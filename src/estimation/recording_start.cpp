@@ -45,6 +45,10 @@ LaidSession lay_from_truth(const SessionToLay& session, int first, const Measure
 LaidSession lay_freely(const SessionToLay& session, LaidSession laid) {
   constexpr int kShortestStretch = 7;
   constexpr double kLost = 0.12;  // share of the sightings: the robot took a wrong turn
+  /// Poses adjusted, of all: beyond, the sightings contradict each other whatever turn is taken,
+  /// and short stretches, each of which adjusts all before it, would cost the square of their
+  /// number.
+  constexpr double kMostCare = 30.0;
   const StartOptions& options = session.options;
   const int poses = session.pose_count();
   const Matrix3 adjusted = Eigen::Vector3d(1e-2, 1e-2, 1e-3).asDiagonal();
@@ -53,21 +57,24 @@ LaidSession lay_freely(const SessionToLay& session, LaidSession laid) {
   laid = place_from_afar(session, std::move(laid), count, count == poses);
   if (count < poses) laid = adjust_stretch(session, std::move(laid), count).laid;
   int longest = poses;
+  double care = 0.0;
   while (count < poses) {
+    const bool careful = options.careful && care < kMostCare;
     const int stretch = std::min(longest, std::max(2 * options.first_stretch / 3, count / 3));
     const int next = std::min(poses, count + stretch);
     const KnownPose from{laid.poses[idx(count - 1)], adjusted};
     LaidSession longer = lay_poses(session, laid, count - 1, next - 1, from);
     longer = place_from_afar(session, std::move(longer), next, next == poses);
-    if (next == poses && !options.careful) return longer;
+    if (next == poses && !careful) return longer;
     AdjustedStretch fit = adjust_stretch(session, std::move(longer), next);
-    if (options.careful && fit.lost > kLost && stretch > kShortestStretch) {
+    care += static_cast<double>(next) / poses;
+    if (careful && fit.lost > kLost && stretch > kShortestStretch) {
       longest = std::max(kShortestStretch, stretch / 3);
       continue;
     }
     laid = std::move(fit.laid);
     count = next;
-    longest = std::min(poses, 2 * longest);
+    longest = careful ? std::min(poses, 2 * longest) : poses;
   }
   return laid;
 }

@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <unordered_set>
 
 namespace trussmap {
 
@@ -27,8 +28,9 @@ CsvReader::CsvReader(std::string_view text, std::string file, CsvForm form)
   if (!read_record()) {
     throw InputError(file_, 1, "the file is empty, expected a header row");
   }
+  std::unordered_set<std::string_view> seen;
   for (const std::string_view name : record_.fields()) {
-    if (std::find(columns_.begin(), columns_.end(), name) != columns_.end()) {
+    if (!seen.insert(name).second) {
       fail("column " + shown_field(name) + " stands twice in the header, expected each name once");
     }
     columns_.emplace_back(name);

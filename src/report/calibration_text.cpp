@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "text/number_text.hpp"
 #include "trussmap/texts.hpp"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ bool nothing_determined(const WheelCalibration& found) {
 }
 
 /// What the held-out legs say of the calibration.
-Verdict verdict(const CalibrationValidation& held) {
+Verdict of_held_out(const CalibrationValidation& held) {
   const std::string errors = fmt::format(
       "{} {} end {:.1f} mm off (rms), nominal {:.1f} mm", held.legs(),
       held.scheme == HoldoutScheme::recordings ? "legs, each recording held out in turn,"
@@ -44,6 +45,30 @@ Verdict verdict(const CalibrationValidation& held) {
       break;
   }
   return {Mood::bad, "calibration does not help: " + errors};
+}
+
+double dispersion_of(const WheelCalibration& found) {
+  return found.dof > 0 ? found.chi2 / found.dof : 0.0;
+}
+
+/// The same, and whether the constants explain what they were found from.
+Verdict verdict(const WheelCalibration& found, const CalibrationValidation& held) {
+  if (nothing_determined(found)) {
+    return {Mood::bad, "nothing determined: these recordings show none of the constants"};
+  }
+  Verdict result = of_held_out(held);
+  const double dispersion = dispersion_of(found);
+  if (dispersion > kFarTooLarge) {
+    if (result.mood == Mood::good) result.mood = Mood::doubt;
+    result.text += fmt::format("; but errors are {} times what the model's noise allows",
+                               times_text(std::sqrt(dispersion)));
+  }
+  return result;
+}
+
+std::vector<std::string> cells_of(const std::string& name, const QuantityText& size,
+                                  const std::string& unit) {
+  return {name, size.value, size.error.empty() ? "" : "\u00b1 " + size.error, unit};
 }
 
 std::string text(const TestedDrives& test) {
@@ -69,14 +94,19 @@ std::string lateness(const std::vector<double>& late) {
   return one == other ? one : one + " to " + other;
 }
 
+std::string thousandths(double metres) {
+  return without_sign_of_nothing(fixed_text(1000.0 * metres, 1));
+}
+
 std::string text(const TruthAlignment& truth) {
   std::vector<double> late;
   late.reserve(truth.clocks.size());
   for (const auto& [session, clock] : truth.clocks) late.push_back(clock.late);
   return fmt::format(
-      "  truth: the point tracked is {:.1f} mm ahead and {:.1f} mm left of the axle's centre, its\n"
-      "  heading is off by {:.1f} mrad, its rows are {} at the start\n",
-      1000.0 * truth.ahead, 1000.0 * truth.left, 1000.0 * truth.heading, lateness(late));
+      "  truth: the point tracked is {} mm ahead and {} mm left of the axle's centre, its\n"
+      "  heading is off by {} mrad, its rows are {} at the start\n",
+      thousandths(truth.ahead), thousandths(truth.left), thousandths(truth.heading),
+      lateness(late));
 }
 
 std::string text(const FixAlignment& fixes) {
@@ -84,8 +114,8 @@ std::string text(const FixAlignment& fixes) {
   late.reserve(fixes.late.size());
   for (const auto& [session, one] : fixes.late) late.push_back(one);
   return fmt::format(
-      "  fixes: of a point {:.1f} mm ahead and {:.1f} mm left of the axle's centre, stamped {}\n",
-      1000.0 * fixes.ahead, 1000.0 * fixes.left, lateness(late));
+      "  fixes: of a point {} mm ahead and {} mm left of the axle's centre, stamped {}\n",
+      thousandths(fixes.ahead), thousandths(fixes.left), lateness(late));
 }
 
 /// A few of them by what they say.
@@ -109,18 +139,14 @@ std::string words_of(const CalibratedMounting& mounting) {
 
 std::string calibration_text(const WheelCalibration& found, const CalibrationValidation& held,
                              const std::optional<TestedDrives>& test, TextStyle style) {
-  const auto [mood, said] =
-      nothing_determined(found)
-          ? Verdict{Mood::bad, "nothing determined: these recordings show none of the constants"}
-          : verdict(held);
+  const auto [mood, said] = verdict(found, held);
   std::string out = verdict_text(mood, said, style) + "\n";
   TextTable table;
   table.columns = {Align::left, Align::right, Align::left};
   const auto row = [&table](const char* name, const std::optional<Calibrated>& one,
                             const char* unit) {
     if (!one) return;
-    const QuantityText cells = quantity_text(one->value, one->sd);
-    table.rows.push_back({name, cells.value, "\u00b1 " + cells.error, unit});
+    table.rows.push_back(cells_of(name, quantity_text(one->value, one->sd), unit));
   };
   table.columns.push_back(Align::left);
   row("E_d  right wheel / left wheel", found.diameter_ratio, "");
@@ -132,8 +158,8 @@ std::string calibration_text(const WheelCalibration& found, const CalibrationVal
     const std::string name(facts_of(one.channel).does_what);
     const std::string unit(facts_of(one.channel).unit);
     const double size = unit.empty() ? 100.0 : 1.0;
-    const QuantityText cells = quantity_text(size * one.g.value, size * one.g.sd);
-    table.rows.push_back({name, cells.value, "\u00b1 " + cells.error, unit.empty() ? "%" : unit});
+    table.rows.push_back(cells_of(name, quantity_text(size * one.g.value, size * one.g.sd),
+                                  unit.empty() ? "%" : unit));
   }
   for (const CalibratedMounting& one : found.mountings) {
     const std::string of = words_of(one);
@@ -142,14 +168,13 @@ std::string calibration_text(const WheelCalibration& found, const CalibrationVal
     row((of + ", turned to the left").c_str(), one.yaw, "rad");
   }
   out += "\n" + table_text(table, style);
-  const double dispersion = found.dof > 0 ? found.chi2 / found.dof : 0.0;
+  const double dispersion = dispersion_of(found);
   out += fmt::format("\n  chi2/dof {:.3f} with {} degrees of freedom\n", dispersion, found.dof);
   if (dispersion > kFarTooLarge) {
     out += fmt::format(
-        "  errors are {0:.1f} times what the model's noise allows: take the \u00b1 {0:.1f} times "
-        "as "
-        "large\n",
-        std::sqrt(dispersion));
+        "  take the \u00b1 {} times as large: that is how far errors are beyond the model's "
+        "noise\n",
+        times_text(std::sqrt(dispersion)));
   } else if (found.dof >= kFewest && dispersion < 1.0 / kFarTooLarge) {
     out += fmt::format(
         "  errors are {:.2g} times what the model's noise allows: it is stated too large, and so "
@@ -173,8 +198,8 @@ std::string calibration_text(const WheelCalibration& found, const CalibrationVal
   return out;
 }
 
-std::string calibration_verdict(const CalibrationValidation& held) {
-  std::string sentence = verdict(held).text + ".";
+std::string calibration_verdict(const WheelCalibration& found, const CalibrationValidation& held) {
+  std::string sentence = verdict(found, held).text + ".";
   sentence.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence.front())));
   return sentence;
 }

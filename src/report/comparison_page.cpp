@@ -7,6 +7,7 @@
 #include "report/page_words.hpp"
 #include "report/result_rows.hpp"
 #include "report/robot_off.hpp"
+#include "text/number_text.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/wording.hpp"
 #include "wording/channel_words.hpp"
@@ -34,9 +35,9 @@ PageTable route_table(const Comparison& result) {
   for (std::size_t k = 0; k < std::min(kRoutes, result.routes.size()); ++k) {
     const RouteMisfit& route = result.routes[k];
     table.rows.push_back({route.from, route.to, std::to_string(route.traversals),
-                          fmt::format("{:.1f}", route.chi2), fmt::format("{:+.0f}", route.force),
-                          fmt::format("{:+.2f}", 100.0 * route.stretch_error),
-                          fmt::format("{:+.1f}", 1000.0 * route.orientation_error)});
+                          fmt::format("{:.1f}", route.chi2), signed_fixed_text(route.force, 0),
+                          signed_fixed_text(100.0 * route.stretch_error, 2),
+                          signed_fixed_text(1000.0 * route.orientation_error, 1)});
   }
   return table;
 }
@@ -55,7 +56,7 @@ PageTable outlier_table(const Comparison& result) {
 
 /// The trend to name, where one is clear.
 const Trend* telling_trend(const Comparison& result) {
-  const bool clear = !result.trends.empty() && result.trends.front().p_adjusted < result.level;
+  const bool clear = !result.trends.empty() && result.tells(result.trends.front());
   return clear ? &result.trends.front() : nullptr;
 }
 
@@ -115,7 +116,7 @@ std::vector<std::string> large_rows(const Comparison& result) {
 std::vector<std::string> otherwise_rows(const Comparison& result) {
   std::vector<std::string> trends;
   for (const Trend& one : result.trends) {
-    if (!(one.p_adjusted < result.level) || trends.size() == kTrendsNamed) break;
+    if (!result.tells(one) || trends.size() == kTrendsNamed) break;
     if (&one != &result.trends.front()) trends.push_back(trend_words(one));
   }
   std::vector<std::string> rows;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "geometry/units.hpp"
+#include "text/number_text.hpp"
 #include "trussmap/texts.hpp"
 #include "trussmap/wording.hpp"
 
@@ -19,10 +20,10 @@ std::string size_text(const Trend& trend) {
 }
 
 std::string signed_percent(double value) {
-  return fmt::format("{:+.2f}", 100.0 * value);
+  return signed_fixed_text(100.0 * value, 2);
 }
 std::string signed_mrad(double value) {
-  return fmt::format("{:+.1f}", 1e3 * value);
+  return signed_fixed_text(1e3 * value, 1);
 }
 
 std::string trends_text(const Comparison& result, TextStyle style) {
@@ -32,7 +33,7 @@ std::string trends_text(const Comparison& result, TextStyle style) {
       {Align::left, Align::left, Align::right, Align::right, Align::right}, {}, true, 2};
   table.rows.push_back({"residual of", "goes with", "explains chi2", "size (rms)", "p, adjusted"});
   for (const Trend& trend : result.trends) {
-    if (trend.p_adjusted > result.level || table.rows.size() > kMost) continue;
+    if (!result.tells(trend) || table.rows.size() > kMost) continue;
     table.rows.push_back({trend.kind, trend.against == "all" ? "everything alike" : trend.against,
                           fmt::format("{:.1f}", trend.score), size_text(trend),
                           probability_text(trend.p_adjusted)});

@@ -72,6 +72,12 @@ std::string missing_text(const Diagnosis& result, TextStyle style) {
     text += fmt::format(
         "  without {} legs end {} off, with {} {} (rms of {} held-out legs, predicted)\n", what,
         length(without, with), what, length(with, without), result.held_out.legs.size());
+    constexpr double kWorse = 1.1;
+    if (with > kWorse * without) {
+      text += fmt::format(
+          "  so these legs are predicted worse with {}: they are few, or {} not the whole cause\n",
+          what, several ? "these are" : "it is");
+    }
   }
   if (result.next_drive)
     text += fmt::format("  to tell them apart: {}\n", in_words(result.next_drive));

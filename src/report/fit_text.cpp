@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "text/number_text.hpp"
 #include "trussmap/texts.hpp"
 #include "trussmap/wording.hpp"
 
@@ -9,6 +10,10 @@
 
 namespace trussmap {
 namespace {
+
+std::string tenths(double value) {
+  return without_sign_of_nothing(fixed_text(value, 1));
+}
 
 std::string estimates_text(const EffectGain& result, TextStyle style) {
   std::string text;
@@ -66,8 +71,8 @@ std::string fit_text(const EffectGain& result, const std::optional<FittedNoise>&
   row("without effects", before, result.held_out_without);
   row("with them", after, result.held_out_with);
   text += fmt::format("\n{}", table_text(table, style));
-  text += fmt::format("  chi2 was predicted to fall by {:.1f}, and fell by {:.1f}\n",
-                      result.predicted_decrease, before.chi2 - after.chi2);
+  text += fmt::format("  chi2 was predicted to fall by {}, and fell by {}\n",
+                      tenths(result.predicted_decrease), tenths(before.chi2 - after.chi2));
   text += fmt::format("  {}\n", in_words(result.held_out_with));
   for (const std::string& warning : after.warnings) text += warning_text(warning, style);
   return noise ? text + "\n" + noise_text(*noise, style) : text;

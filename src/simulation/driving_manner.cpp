@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -59,6 +62,13 @@ std::vector<double> turns_of_arcs(double turn, std::size_t arcs) {
 }
 
 int whole_rows(double seconds, double row_duration) {
+  constexpr double kMost = 1e7;
+  if (!(seconds / row_duration < kMost)) {
+    throw std::invalid_argument(fmt::format(
+        "speeds, turn rates and rests must not make a leg or a turn last {:g} s: 10^7 rows of {:g} "
+        "s at most",
+        seconds, row_duration));
+  }
   return static_cast<int>(std::max(1L, std::lround(seconds / row_duration)));
 }
 

@@ -30,6 +30,26 @@ std::string fixed_text(double value, int decimals) {
   return {buffer.data(), end};
 }
 
+std::string signed_fixed_text(double value, int decimals) {
+  return without_sign_of_nothing((std::signbit(value) ? "" : "+") + fixed_text(value, decimals));
+}
+
+std::string without_sign_of_nothing(std::string text) {
+  const bool has_sign = !text.empty() && (text.front() == '-' || text.front() == '+');
+  if (has_sign && text.find('0') != std::string::npos &&
+      text.find_first_not_of("0.", 1) == std::string::npos) {
+    text.erase(0, 1);
+  }
+  return text;
+}
+
+std::string times_text(double ratio) {
+  constexpr int kMost = 4;
+  int decimals = 1;
+  while (decimals < kMost && std::abs(ratio - 1.0) < 0.5 * std::pow(10.0, -decimals)) ++decimals;
+  return fixed_text(ratio, decimals);
+}
+
 double rounded_within(double value, double scale) {
   const int digits = 4 - static_cast<int>(std::floor(std::log10(scale)));
   // A quotient or product of two whole numbers is the double nearest to the decimal number.

@@ -19,6 +19,15 @@ namespace trussmap {
 /// So many digits behind the point, as printf's %f.
 [[nodiscard]] std::string fixed_text(double value, int decimals);
 
+/// The same with its sign, "+1.20"; what rounds to nothing has none: "0.00".
+[[nodiscard]] std::string signed_fixed_text(double value, int decimals);
+
+/// A number's text, without the sign where all digits are 0.
+[[nodiscard]] std::string without_sign_of_nothing(std::string text);
+
+/// How many times as large: with one decimal, or as many as show that it is not 1.
+[[nodiscard]] std::string times_text(double ratio);
+
 /// The parts, one behind the other: texts and whole numbers.
 template <typename... Parts>
 [[nodiscard]] std::string joined(const Parts&... parts) {

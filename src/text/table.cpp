@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/table.hpp"
 
+#include "text/number_text.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -32,7 +34,7 @@ std::string without_trailing_space(std::string line) {
 std::string format_table(const TextTable& table) {
   std::vector<std::vector<std::string>> rows = table.rows;
   for (auto& row : rows) {
-    for (std::string& cell : row) cell = shortened_words(cell);
+    for (std::string& cell : row) cell = without_sign_of_nothing(shortened_words(cell));
   }
   std::vector<std::size_t> widths(table.columns.size(), 0);
   for (const auto& row : rows) {
@@ -85,7 +87,8 @@ QuantityText quantity_text(double value, double standard_error) {
     return {fmt::format("{:.6g}", value), fmt::format("{:.1e}", standard_error)};
   }
   const int shown = std::max(decimals, 0);
-  return {fmt::format("{:.{}f}", value, shown), fmt::format("{:.{}f}", standard_error, shown)};
+  return {without_sign_of_nothing(fmt::format("{:.{}f}", value, shown)),
+          fmt::format("{:.{}f}", standard_error, shown)};
 }
 
 std::string probability_text(double p) {

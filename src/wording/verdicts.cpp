@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "text/number_text.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/wording.hpp"
@@ -13,8 +14,8 @@ namespace trussmap {
 namespace {
 
 std::string beyond_noise(double chi2, int dof) {
-  return fmt::format("errors are {:.1f} times what the model's noise allows",
-                     std::sqrt(chi2 / std::max(1, dof)));
+  return fmt::format("errors are {} times what the model's noise allows",
+                     times_text(std::sqrt(chi2 / std::max(1, dof))));
 }
 
 /// A verdict, and by how many of the sightings it is one.

@@ -111,6 +111,21 @@ TEST_F(HostileWords, FilesOfNoSense) {
   refused("check " + at("nul"), "is missing, found");
 }
 
+// Comparisons with what is no number are all false.
+TEST_F(HostileWords, OptionsThatAreNoNumbers) {
+  const std::string compare = "compare " + at("rec") + " --model " + at("model.toml");
+  for (const char* value : {"nan", "inf", "-inf", "-nan"}) {
+    const std::string given = std::string("=") + value;
+    refused(compare + " --level" + given, "--level: '" + std::string(value) + "' is not a finite");
+    refused(compare + " --holdout" + given, "--holdout");
+    refused("explore --air-loss" + given, "--air-loss");
+    refused("simulate --out " + at("sim") + " --sensor " + value + ",0,0", "--sensor");
+  }
+  refused("simulate --out " + at("sim") + " --speeds 1e-12,1e-12", "speeds, turn rates and rests");
+  refused("explore --mesh 2x2 --tours 1e6", "--tours 1e+06");
+  refused("explore --mesh 2x2 --spacing 1e9", "--spacing");
+}
+
 TEST_F(HostileWords, FiguresBeyondAllThatRobotsHave) {
   for (const char* length : {"1e-12", "1e300", "1e-320", "0"}) {
     refused_model(std::string("[robot]\nwheelbase = ") + length + "\n",

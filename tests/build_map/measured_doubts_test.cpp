@@ -84,6 +84,29 @@ TEST(MeasuredDoubts, TravelThatIsHalfAsLong) {
   EXPECT_TRUE(says(built, "it fits a map 2 times as large")) << verdict_in_words(built);
 }
 
+// A map of landmarks without a survey, and a tracker's truth of its robot, as written down
+// otherwise.
+TEST(MeasuredDoubts, ATruthThatContradictsAMapOfLandmarks) {
+  const auto built_with = [](double x, double y) {
+    SimulatedRecording one = toured();
+    Recording& recording = one.drive.recording;
+    recording.survey.clear();
+    const auto& rows = one.drive.motion.rows;
+    for (std::size_t row = 1; row < rows.size(); row += 2) {
+      const Pose& pose = rows[row].pose;
+      recording.truth.push_back({recording.drive.t[row], x * pose.x, y * pose.y, pose.heading});
+    }
+    return build_map({recording}, one.model);
+  };
+  const BuiltMap right = built_with(1.0, 1.0);
+  EXPECT_TRUE(right.good()) << verdict_in_words(right);
+  const BuiltMap mirrored = built_with(-1.0, 1.0);
+  EXPECT_TRUE(says(mirrored, "the mirrored truth:")) << verdict_in_words(mirrored);
+  const BuiltMap large = built_with(100.0, 100.0);
+  EXPECT_TRUE(says(large, "times as large: is the truth in another unit"))
+      << verdict_in_words(large);
+}
+
 // The path of a drive by fixes and its truth in centimetres.
 TEST(MeasuredDoubts, ATruthInAnotherUnit) {
   SimulationSettings settings;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/table.hpp"
 
+#include "text/number_text.hpp"
+
 #include <cmath>
 #include <limits>
 
@@ -40,6 +42,27 @@ TEST(QuantityText, ValueAndErrorShareTheirLastDigit) {
   EXPECT_EQ(both(0.5, std::numeric_limits<double>::quiet_NaN()), "0.5|");
   EXPECT_EQ(both(1.0, 3.2e-13), "1|3.2e-13");
   EXPECT_EQ(both(std::nan(""), 1.0), "-|");
+}
+
+TEST(QuantityText, WhatRoundsToNothingHasNoSign) {
+  EXPECT_EQ(quantity_text(-0.0004, 0.011).value, "0.000");
+  EXPECT_EQ(quantity_text(-0.0104, 0.011).value, "-0.010");
+  EXPECT_EQ(signed_fixed_text(-0.004, 2), "0.00");
+  EXPECT_EQ(signed_fixed_text(0.004, 2), "0.00");
+  EXPECT_EQ(signed_fixed_text(-0.006, 2), "-0.01");
+  EXPECT_EQ(signed_fixed_text(1.5, 1), "+1.5");
+  EXPECT_EQ(without_sign_of_nothing("-"), "-");
+  EXPECT_EQ(without_sign_of_nothing("-."), "-.");
+  TextTable table{{Align::right}, {{"-0.0"}, {"+0"}, {"-0.1"}}, false, 0};
+  EXPECT_EQ(format_table(table), " 0.0\n   0\n-0.1\n");
+}
+
+TEST(TimesText, ShowsThatItIsNotOne) {
+  EXPECT_EQ(times_text(2.66), "2.7");
+  EXPECT_EQ(times_text(1.04), "1.04");
+  EXPECT_EQ(times_text(1.004), "1.004");
+  EXPECT_EQ(times_text(0.97), "0.97");
+  EXPECT_EQ(times_text(1.0), "1.0000");
 }
 
 TEST(ProbabilityText, SmallOnesAreShownAsSmall) {
