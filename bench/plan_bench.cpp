@@ -88,8 +88,7 @@ std::optional<Riddle> draw_riddle(std::uint64_t seed, const BenchOptions& option
   const DrivenRecording plain = record_in(world, {});
   const ModelFit fit = fit_model({plain}, world.model);
   riddle.truth = subject.effect;
-  riddle.truth.coefficients =
-      sized(subject, world, ScoreTest(*fit.state), options.times, seed);
+  riddle.truth.coefficients = sized(subject, world, ScoreTest(*fit.state), options.times, seed);
   if (riddle.truth.coefficients.empty()) return std::nullopt;
   riddle.recording = record_in(world, {riddle.truth});
   riddle.diagnosis = diagnose({riddle.recording}, world.model);
@@ -131,9 +130,9 @@ Answer answer_of(const Riddle& riddle, const DrivenRecording& further,
   }
   answer.said = open.front().name;
   answer.right = is_same(open.front(), riddle.truth);
-  answer.decided = answer.right &&
-                   std::none_of(open.begin() + 1, open.end(),
-                                [&](const Effect& one) { return has(planned, one); });
+  answer.decided =
+      answer.right && std::none_of(open.begin() + 1, open.end(),
+                                   [&](const Effect& one) { return has(planned, one); });
   return answer;
 }
 
@@ -164,8 +163,8 @@ void try_riddle(const Riddle& riddle, const BenchOptions& options, Sums& sums) {
   if (options.verbose) {
     for (const PlannedPair& one : drive.pairs) {
       fmt::print("       {} / {}: lambda {:.1f} -> {:.1f}, power {:.2f} -> {:.2f}{}\n",
-                 one.truth.name, one.rival.name, one.before, one.after, one.power_before,
-                 one.power, one.beyond ? ", beyond" : "");
+                 one.truth.name, one.rival.name, one.before, one.after, one.power_before, one.power,
+                 one.beyond ? ", beyond" : "");
     }
   }
   std::size_t beyond = 0;
@@ -198,30 +197,31 @@ void try_riddle(const Riddle& riddle, const BenchOptions& options, Sums& sums) {
     other = fmt::format("; three tours: {}{}", long_way.right ? "right" : "wrong",
                         long_way.decided ? ", decided" : "");
   }
-  fmt::print("{:6} {} among {} ({} pairs of {} beyond): {:.0f} m of {:.0f}, {:.0f} s, power "
-             "{:.2f}{}, planned in {:.1f} s: {}{} ({}){}\n",
-             world.seed, riddle.truth.name, riddle.rivals.size(), beyond, drive.pairs.size(),
-             drive.length, three, drive.duration, drive.power, drive.enough ? "" : " (not enough)",
-             seconds, answer.right ? "right" : "WRONG", answer.decided ? ", decided" : "",
-             answer.said, other);
+  fmt::print(
+      "{:6} {} among {} ({} pairs of {} beyond): {:.0f} m of {:.0f}, {:.0f} s, power "
+      "{:.2f}{}, planned in {:.1f} s: {}{} ({}){}\n",
+      world.seed, riddle.truth.name, riddle.rivals.size(), beyond, drive.pairs.size(), drive.length,
+      three, drive.duration, drive.power, drive.enough ? "" : " (not enough)", seconds,
+      answer.right ? "right" : "WRONG", answer.decided ? ", decided" : "", answer.said, other);
   std::fflush(stdout);
 }
 
 void run(const BenchOptions& options) {
   Sums sums;
-  for (std::uint64_t seed = options.first;
-       seed <= options.last && sums.riddles < options.riddles; ++seed) {
+  for (std::uint64_t seed = options.first; seed <= options.last && sums.riddles < options.riddles;
+       ++seed) {
     const std::optional<Riddle> riddle = draw_riddle(seed, options);
     if (riddle) try_riddle(*riddle, options, sums);
   }
-  fmt::print("{} riddles, {} planned: right {}, decided {}; with power as wished {}: right {}, "
-             "decided {}\n",
-             sums.riddles, sums.planned, sums.right, sums.decided, sums.enough, sums.enough_right,
-             sums.enough_decided);
-  fmt::print("at most half as long as three tours: {}; together {:.0f} m of {:.0f}; {:.1f} s a "
-             "plan\n",
-             sums.short_enough, sums.length, sums.tours,
-             sums.seconds / std::max(1, sums.riddles));
+  fmt::print(
+      "{} riddles, {} planned: right {}, decided {}; with power as wished {}: right {}, "
+      "decided {}\n",
+      sums.riddles, sums.planned, sums.right, sums.decided, sums.enough, sums.enough_right,
+      sums.enough_decided);
+  fmt::print(
+      "at most half as long as three tours: {}; together {:.0f} m of {:.0f}; {:.1f} s a "
+      "plan\n",
+      sums.short_enough, sums.length, sums.tours, sums.seconds / std::max(1, sums.riddles));
   if (options.tours) {
     fmt::print("three tours in place of the plan: right {}, decided {}\n", sums.tours_right,
                sums.tours_decided);

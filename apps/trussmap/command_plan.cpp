@@ -118,7 +118,8 @@ Planned deciding_drive(const PlanCommand& options) {
 
 void check_input(const PlanCommand& options) {
   const bool recorded = !options.input.recordings.empty();
-  const int ways = (recorded ? 1 : 0) + (options.map.empty() ? 0 : 1) + (options.mesh.empty() ? 0 : 1);
+  const int ways =
+      (recorded ? 1 : 0) + (options.map.empty() ? 0 : 1) + (options.mesh.empty() ? 0 : 1);
   if (ways != 1) {
     throw UsageError(
         "plan: expected either recordings, of which the drive is to decide what they leave open, "
@@ -137,7 +138,8 @@ void run_plan(PlanCommand& options) {
   options.plan.compass = !options.no_compass;
   options.plan.rivals = names_between_commas(options.rivals);
   const bool recorded = !options.input.recordings.empty();
-  const Planned planned = recorded ? deciding_drive(options) : Planned{acceptance_drive(options), {}};
+  const Planned planned =
+      recorded ? deciding_drive(options) : Planned{acceptance_drive(options), {}};
   const bool drives = !planned.drive.plan.waypoints.empty();
   NamedContents files;
   std::string written;
@@ -147,8 +149,8 @@ void run_plan(PlanCommand& options) {
     written = options.out + " and " + geojson_of(options.out);
   }
   if (!options.input.json.empty()) {
-    files.emplace_back(options.input.json, results::json_text(results::PlanReport{
-                                               &planned.drive, &planned.notes}));
+    files.emplace_back(options.input.json,
+                       results::json_text(results::PlanReport{&planned.drive, &planned.notes}));
   }
   write_files(files);
   fmt::print("{}{}", plan_text(planned.drive, written, style_of(stdout)),

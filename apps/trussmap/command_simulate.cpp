@@ -94,8 +94,9 @@ void setup_simulate(const Command& app) {
       options->plan = read_plan(options->plan_file);
       options->places_of_plan = command.count("--mesh") == 0;
       if (options->places_of_plan && (options->hide || options->uneven)) {
-        throw UsageError("simulate: --plan with --hide or --uneven is a further drive in a world "
-                         "that is drawn, expected its --mesh, too");
+        throw UsageError(
+            "simulate: --plan with --hide or --uneven is a further drive in a world "
+            "that is drawn, expected its --mesh, too");
       }
     }
     if (options->hide && command.count("--seed") == 0) {

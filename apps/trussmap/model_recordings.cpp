@@ -14,8 +14,7 @@
 #include <fmt/format.h>
 
 namespace trussmap::app {
-void add_model_recordings(const Command& command, ModelRecordingsOptions& options,
-                          bool required) {
+void add_model_recordings(const Command& command, ModelRecordingsOptions& options, bool required) {
   command.add_option("--json", options.json, "Write every figure as JSON").type_name("FILE");
   add_fitted_recordings(command, options, required);
   command
@@ -25,8 +24,7 @@ void add_model_recordings(const Command& command, ModelRecordingsOptions& option
       .capture_default_str();
 }
 
-void add_fitted_recordings(const Command& command, ModelRecordingsOptions& options,
-                           bool required) {
+void add_fitted_recordings(const Command& command, ModelRecordingsOptions& options, bool required) {
   const Option recordings =
       command.add_option("RECORDING", options.recordings, "Folders of CSV files, one per session")
           .type_name("DIR");

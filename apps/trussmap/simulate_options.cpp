@@ -80,21 +80,18 @@ void add_world_options(const Command& command, SimulateOptions& options) {
                   "The same seed gives the same recording; --hide without it draws one")
       .check(whole_number(0))
       .capture_default_str();
-  command
-      .add_option("--plan", options.plan_file,
-                  "Drive these waypoints (trussmap plan --out) in place of tours, as a further "
-                  "session of the world and robot of --seed, with noise of its own; without --mesh "
-                  "the waypoints' own places are the landmarks")
-      .type_name("FILE")
-      .excludes("--walk")
-      .excludes("--tours")
-      .excludes("--full-turns");
   command.add_flag("--rests", options.rests, "Rest for 2 to 20 s at one stop in ten");
   command
       .add_option("--full-turns", options.full_turns,
                   "Stops at which the robot turns round twice to the left and twice to the right")
       .check(whole_number(0))
       .capture_default_str();
+  command
+      .add_option("--plan", options.plan_file,
+                  "Drive these waypoints (trussmap plan --out) in place of tours, as a further "
+                  "session of the world and robot of --seed, with noise of its own; without --mesh "
+                  "the waypoints' own places are the landmarks. Tours then matter for --hide alone")
+      .type_name("FILE");
   add_driving_options(command, options);
 }
 

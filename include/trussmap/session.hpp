@@ -129,7 +129,7 @@ struct PlanOptions {
   double most_time = 1800.0;             ///< s
   double most_length = 1000.0;           ///< m
   double power = 0.95;
-  double level = 0.01;  ///< chance that a wrong rival is preferred by so much
+  double level = 0.01;     ///< chance that a wrong rival is preferred by so much
   std::string start = {};  ///< landmark; empty: where the last recording ended
 };
 
@@ -140,8 +140,8 @@ struct PlannedPair {
   double before = 0.0;  ///< lambda of the recordings alone
   double after = 0.0;   ///< with the drive
   double power_before = 0.0;
-  double power = 0.0;    ///< with the drive
-  bool beyond = false;   ///< not even a thorough tour tells it: the drive was not planned for it
+  double power = 0.0;   ///< with the drive
+  bool beyond = false;  ///< not even a thorough tour tells it: the drive was not planned for it
 };
 
 /// An effect that a tour has to show.
@@ -166,26 +166,27 @@ enum class Instrument {
 
 struct InstrumentWorth {
   Instrument instrument = Instrument::gyro;
-  bool there = false;    ///< the robot has it
-  double factor = 1.0;   ///< of the least lambda that the drive was planned for
+  bool there = false;     ///< the robot has it
+  double factor = 1.0;    ///< of the least lambda that the drive was planned for
   std::size_t tells = 0;  ///< of what is beyond the drive, how much it would tell by that power
 };
 
 struct PlannedDrive {
-  DrivePlan plan;         ///< without waypoints: no drive helps
-  double length = 0.0;    ///< m
-  double duration = 0.0;  ///< s
-  bool enough = false;    ///< all that a drive can tell is told by the wished power
-  double power = 0.0;     ///< the least of that
+  DrivePlan plan;                      ///< without waypoints: no drive helps
+  double length = 0.0;                 ///< m
+  double duration = 0.0;               ///< s
+  bool enough = false;                 ///< all that a drive can tell is told by the wished power
+  double power = 0.0;                  ///< the least of that
   std::vector<PlannedPair> pairs;      ///< of rivals
   std::vector<PlannedEffect> effects;  ///< of an acceptance test
   std::vector<InstrumentWorth> worth;  ///< the most useful first
   PlanOptions options;
 };
 
-/// To tell rivals of a diagnosis apart, from landmark to landmark that the robot stood on, by routes
-/// that it drove. Throws std::invalid_argument on rivals or a start that are not there, on limits
-/// that make no sense and where nothing is open; SolveError where the recordings show no routes.
+/// To tell rivals of a diagnosis apart, from landmark to landmark that the robot stood on, by
+/// routes that it drove. Throws std::invalid_argument on rivals or a start that are not there, on
+/// limits that make no sense and where nothing is open; SolveError where the recordings show no
+/// routes.
 [[nodiscard]] PlannedDrive plan_drive(const Diagnosis& diagnosis, const PlanOptions& options = {});
 
 /// What a robot is accepted by.
@@ -197,10 +198,10 @@ struct AcceptanceOptions : PlanOptions {
   double size = 3.0;
 };
 
-/// The tour of a new robot on a map's routes that shows every effect of the catalogue, but for those
-/// at a place, of its practical size by itself. Landmarks are known as the map states it (else as
-/// the model states a survey). The start is the first landmark where none is named. Throws as
-/// plan_drive.
+/// The tour of a new robot on a map's routes that shows every effect of the catalogue, but for
+/// those at a place, of its practical size by itself. Landmarks are known as the map states it
+/// (else as the model states a survey). The start is the first landmark where none is named. Throws
+/// as plan_drive.
 [[nodiscard]] PlannedDrive plan_acceptance(const LandmarkGraph& map, const Model& model,
                                            const AcceptanceOptions& options = {});
 

@@ -138,11 +138,11 @@ struct Surroundings {
 /// How a leg is to be driven, in place of what would be drawn: the robot stands, turns on the spot
 /// (in circles where it cannot), drives.
 struct LegOrder {
-  double rest = 0.0;       ///< s
-  double turn = 0.0;       ///< rad, + to the left; what is needed to set out, and whole turns
-  double turn_rate = 0.5;  ///< rad/s
-  double speed = 0.5;      ///< m/s
-  double bend = 0.0;       ///< rad that it turns on its way, + to the left, at most a radian
+  double rest = 0.0;            ///< s
+  double turn = 0.0;            ///< rad, + to the left; what is needed to set out, and whole turns
+  double turn_rate = 0.5;       ///< rad/s
+  double speed = 0.5;           ///< m/s
+  double bend = 0.0;            ///< rad that it turns on its way, + to the left, at most a radian
   Surroundings surroundings;    ///< from its rest on; the temperature goes its own way
   std::vector<double> further;  ///< values of DrivingStyle::covariates
 };
@@ -302,13 +302,13 @@ struct SimulatedDrive {
 };
 
 /// Lays the path along the walk (landmarks of the mesh, successive ones different), records it and
-/// adds the survey. The robot starts on the first landmark with its first heading at time 0. Under a delay
-/// it rests before the first and after the last sighting, so that they stay within the drive. The
-/// same seed gives the same recording. Throws std::invalid_argument on a walk of fewer than two
-/// landmarks or of some too near each other (below 20 `standing`, 1 cm, or what the robot needs to
-/// turn), a style, robot or noise that makes no sense, and effects that its drive does not have or
-/// that leave no travel, a range of 0 or less or a sighting outside the drive. Of other wheels than
-/// two the recording has the columns alone (with_wheels takes them in).
+/// adds the survey. The robot starts on the first landmark with its first heading at time 0. Under
+/// a delay it rests before the first and after the last sighting, so that they stay within the
+/// drive. The same seed gives the same recording. Throws std::invalid_argument on a walk of fewer
+/// than two landmarks or of some too near each other (below 20 `standing`, 1 cm, or what the robot
+/// needs to turn), a style, robot or noise that makes no sense, and effects that its drive does not
+/// have or that leave no travel, a range of 0 or less or a sighting outside the drive. Of other
+/// wheels than two the recording has the columns alone (with_wheels takes them in).
 [[nodiscard]] SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
                                             const DrivingStyle& style, const WheeledRobot& robot,
                                             std::uint64_t seed,

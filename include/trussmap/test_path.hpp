@@ -19,7 +19,8 @@
 // after the other, what to do at each, and how to come there.
 //
 //        bend         the robot comes at `speed`, turning by `bend` on its way (0: straight), and
-//      .------.       stands on the landmark for `stop`; its loads are changed; it turns on the spot
+//      .------.       stands on the landmark for `stop`; its loads are changed; it turns on the
+//      spot
 //     o        `o     by `turn`, whole turns included, at `turn_rate`, and leaves at `heading`
 #pragma once
 
@@ -73,7 +74,7 @@ struct Waypoint {
 };
 
 struct DrivePlan {
-  std::vector<std::string> loads;  ///< columns of the recording that the driver sets: "payload_kg"
+  std::vector<std::string> loads;   ///< columns of the recording that the driver sets: "payload_kg"
   std::vector<Waypoint> waypoints;  ///< two or more, successive ones at different landmarks
 };
 

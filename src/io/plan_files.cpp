@@ -22,10 +22,10 @@ using nlohmann::json;
 
 constexpr std::array<std::string_view, 10> kPlanColumns = {
     "number", "landmark", "x", "y", "heading", "speed", "bend", "turn", "turn_rate", "stop_s"};
-constexpr double kFarthest = 1e6;      // m
-constexpr double kFastest = 100.0;     // m/s, rad/s
+constexpr double kFarthest = 1e6;       // m
+constexpr double kFastest = 100.0;      // m/s, rad/s
 constexpr double kMostTurned = 1000.0;  // rad
-constexpr double kLongestStop = 1e5;   // s
+constexpr double kLongestStop = 1e5;    // s
 constexpr double kLargestLoad = 1e9;
 
 /// A row as it stands, each number by itself.
@@ -139,9 +139,8 @@ std::string format_plan_geojson(const DrivePlan& plan) {
   json features = json::array();
   for (std::size_t k = 0; k < plan.waypoints.size(); ++k) {
     const Waypoint& one = plan.waypoints[k];
-    json properties = {{"number", k + 1},        {"landmark", one.landmark},
-                       {"heading", one.heading}, {"turn", one.turn},
-                       {"turn_rate", one.turn_rate}, {"stop_s", one.stop}};
+    json properties = {{"number", k + 1},  {"landmark", one.landmark},   {"heading", one.heading},
+                       {"turn", one.turn}, {"turn_rate", one.turn_rate}, {"stop_s", one.stop}};
     for (std::size_t load = 0; load < plan.loads.size(); ++load) {
       properties[plan.loads[load]] = one.loads[load];
     }
@@ -150,11 +149,9 @@ std::string format_plan_geojson(const DrivePlan& plan) {
   for (std::size_t k = 1; k < plan.waypoints.size(); ++k) {
     const Waypoint& from = plan.waypoints[k - 1];
     const Waypoint& to = plan.waypoints[k];
-    features.push_back(feature("LineString", {coordinates_of(from), coordinates_of(to)},
-                               {{"from", from.landmark},
-                                {"to", to.landmark},
-                                {"speed", to.speed},
-                                {"bend", to.bend}}));
+    features.push_back(feature(
+        "LineString", {coordinates_of(from), coordinates_of(to)},
+        {{"from", from.landmark}, {"to", to.landmark}, {"speed", to.speed}, {"bend", to.bend}}));
   }
   return json{{"type", "FeatureCollection"}, {"features", features}}.dump(1) + "\n";
 }

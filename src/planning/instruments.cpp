@@ -11,11 +11,12 @@
 namespace trussmap {
 namespace {
 
-constexpr double kTape = 0.002;        // m
-constexpr double kSurveyedBy = 2.0;    // of the survey's sd: landmarks that are known as well are surveyed
-constexpr std::array kInstruments = {Instrument::compass,  Instrument::gyro,
+constexpr double kTape = 0.002;  // m
+constexpr double kSurveyedBy =
+    2.0;  // of the survey's sd: landmarks that are known as well are surveyed
+constexpr std::array kInstruments = {Instrument::compass,      Instrument::gyro,
                                      Instrument::range_sensor, Instrument::distance,
-                                     Instrument::survey,   Instrument::truth};
+                                     Instrument::survey,       Instrument::truth};
 
 /// Where a landmark's coordinates are among the unknowns; -1: it is not there.
 Eigen::Index place_of(const DriveInformation& known, const std::string& landmark) {

@@ -10,8 +10,9 @@
 namespace trussmap {
 namespace {
 
-constexpr double kStand = 30.0;  // s
-constexpr double kBend = 0.8;    // rad
+constexpr double kStand = 30.0;       // s
+constexpr double kLongStand = 300.0;  // s: until time and distance have gone apart
+constexpr double kBend = 0.8;         // rad
 
 std::vector<double> first_levels(const PlanWorld& world) {
   std::vector<double> levels;
@@ -48,7 +49,8 @@ std::vector<Manoeuvre> variants_of(const PlanWorld& world, const Manoeuvre& leg)
     }
   }
   for (const double bend : {0.0, -kBend, kBend}) add([&](Manoeuvre& one) { one.bend = bend; });
-  for (const double stand : {0.0, kStand}) add([&](Manoeuvre& one) { one.stand = stand; });
+  for (const double stand : {0.0, kStand, kLongStand})
+    add([&](Manoeuvre& one) { one.stand = stand; });
   for (std::size_t k = 0; k < world.loads.size(); ++k) {
     for (const double level : world.loads[k].levels) {
       add([&](Manoeuvre& one) { one.loads[k] = level; });

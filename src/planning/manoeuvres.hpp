@@ -3,9 +3,9 @@
 //
 // Elementary manoeuvres: one leg along a route, and what is done before it.
 //
-//   stand   0 or 30 s                                  turn    as needed, or 1 or 2 whole turns more
-//   speed   slow, usual, limit                                 either way, slow or fast
-//   bend    none, 0.8 rad to the left or the right     loads   each level that the driver can set
+//   stand   0, 30 or 300 s                             turn    as needed, or 1 or 2 whole turns
+//   more speed   slow, usual, limit                                 either way, slow or fast bend
+//   none, 0.8 rad to the left or the right     loads   each level that the driver can set
 #pragma once
 
 #include "planning/plan_world.hpp"
@@ -16,12 +16,12 @@
 namespace trussmap {
 
 struct Manoeuvre {
-  int to = 0;           ///< landmark
-  double speed = 0.0;   ///< m/s
-  int turns = 0;        ///< whole ones beside what is needed, + to the left
-  double rate = 0.0;    ///< rad/s
-  double bend = 0.0;    ///< rad
-  double stand = 0.0;   ///< s
+  int to = 0;          ///< landmark
+  double speed = 0.0;  ///< m/s
+  int turns = 0;       ///< whole ones beside what is needed, + to the left
+  double rate = 0.0;   ///< rad/s
+  double bend = 0.0;   ///< rad
+  double stand = 0.0;  ///< s
   std::vector<double> loads;
 
   friend bool operator==(const Manoeuvre& a, const Manoeuvre& b) = default;
@@ -33,9 +33,7 @@ struct PlannedTour {
   std::vector<Manoeuvre> legs;
 
   /// Where its leg begins, or (one past the last) the tour ends.
-  [[nodiscard]] int landmark(std::size_t leg) const {
-    return leg == 0 ? start : legs[leg - 1].to;
-  }
+  [[nodiscard]] int landmark(std::size_t leg) const { return leg == 0 ? start : legs[leg - 1].to; }
 };
 
 /// The leg as it is driven where nothing is to be told: loads as they were.

@@ -19,7 +19,7 @@
 namespace trussmap {
 namespace {
 
-constexpr double kBeyondTour = 0.5;     // of the lambda wanted: what a thorough tour leaves less of
+constexpr double kBeyondTour = 0.25;    // of the lambda wanted: a thorough tour shows less of it
 constexpr std::size_t kMostOfMap = 30;  // landmarks
 constexpr double kFastest = 0.9;        // m/s
 
@@ -54,8 +54,7 @@ int start_on(const LandmarkGraph& map, const std::string& name) {
   return *start;
 }
 
-PlanWorld world_on(const LandmarkGraph& map, const Model& model,
-                   const AcceptanceOptions& options) {
+PlanWorld world_on(const LandmarkGraph& map, const Model& model, const AcceptanceOptions& options) {
   PlanWorld world;
   const std::vector<int> places = places_near(map, start_on(map, options.start));
   std::vector<int> numbers(idx(map.landmarks()), -1);
@@ -82,7 +81,10 @@ PlanWorld world_on(const LandmarkGraph& map, const Model& model,
   const double slow = std::min(options.slowest, limit);
   world.speeds = {slow, 0.5 * (slow + limit), limit};
   world.turn_rates = {0.3, 1.0};
-  world.constants = {{"payload_kg", {0.0}}, {"lights", {0.0}}, {"temperature_C", {20.0}}};
+  for (const auto& [name, value] :
+       {std::pair("payload_kg", 0.0), std::pair("lights", 0.0), std::pair("temperature_C", 20.0)}) {
+    world.columns.push_back({name, {0.0}, {value}});
+  }
   return world;
 }
 
@@ -135,7 +137,8 @@ Asked questions_of(const std::vector<PlannedEffect>& effects,
                    const std::vector<std::vector<Eigen::Index>>& columns,
                    const AcceptanceOptions& options) {
   Asked asked;
-  const double level = options.level / static_cast<double>(std::max<std::size_t>(1, effects.size()));
+  const double level =
+      options.level / static_cast<double>(std::max<std::size_t>(1, effects.size()));
   for (std::size_t k = 0; k < effects.size(); ++k) {
     const auto shapes = static_cast<Eigen::Index>(columns[k].size());
     for (Eigen::Index shape = 0; shape < shapes; ++shape) {
@@ -168,8 +171,15 @@ PlannedDrive plan_acceptance(const LandmarkGraph& map, const Model& model,
   const Asked asked = questions_of(result.effects, columns_of(effects), options);
   Eigen::Index columns = 0;
   for (const Effect& one : effects) columns += static_cast<Eigen::Index>(one.shape.size());
-  SearchTask task{world, known_of(map, world, columns), effects, {}, asked.questions, {}, 1.0,
-                  options.most_time, options.most_length};
+  SearchTask task{world,
+                  known_of(map, world, columns),
+                  effects,
+                  {},
+                  asked.questions,
+                  {},
+                  1.0,
+                  options.most_time,
+                  options.most_length};
   const std::vector<double> shown = lambdas_of(task, gram_with(task, world, thorough));
   std::vector<bool> beyond;
   task.questions.clear();

@@ -14,7 +14,18 @@
 namespace trussmap {
 namespace {
 
-constexpr double kBeyond = 0.05;  // of the lambda wanted: what a thorough tour leaves less of
+constexpr double kBeyond = 0.25;  // of the lambda that is lacking: a thorough tour tells less of it
+
+/// Whether any goes with what depends on all that was driven before.
+bool goes_on(const std::vector<Effect>& rivals, const PlanWorld& world) {
+  for (const std::string& name : variables_in(rivals)) {
+    if (name == "t" || name == "distance") return true;
+    for (const ColumnInTime& one : world.columns) {
+      if (one.name == name && one.values.size() > 1) return true;
+    }
+  }
+  return false;
+}
 
 struct Pair {
   std::size_t truth = 0;
@@ -43,8 +54,8 @@ PlannedDrive plan_drive(const Diagnosis& diagnosis, const PlanOptions& options) 
   check_plan_options(options);
   const FitState& fit = *diagnosis.under->fit.state;
   const RivalSubject subject = rivals_of(diagnosis, options);
-  const PlanWorld world = recorded_world(fit, variables_in(subject.rivals), options.start,
-                                         options.max_speed);
+  const PlanWorld world =
+      recorded_world(fit, variables_in(subject.rivals), options.start, options.max_speed);
   std::vector<Effect> effects = subject.rivals;
   effects.insert(effects.end(), subject.beside.begin(), subject.beside.end());
   SearchTask task{world,
@@ -56,6 +67,7 @@ PlannedDrive plan_drive(const Diagnosis& diagnosis, const PlanOptions& options) 
                   subject.phi,
                   options.most_time,
                   options.most_length};
+  task.goes_on = goes_on(subject.rivals, world);
   const auto columns = columns_of(effects);
   for (std::size_t k = subject.rivals.size(); k < columns.size(); ++k) {
     task.beside.insert(task.beside.end(), columns[k].begin(), columns[k].end());
@@ -80,7 +92,7 @@ PlannedDrive plan_drive(const Diagnosis& diagnosis, const PlanOptions& options) 
     PlannedPair pair{subject.rivals[pairs[k].truth], subject.rivals[pairs[k].rival]};
     pair.before = pair.after = before[k];
     pair.power_before = pair.power = power_of(questions[k], before[k]);
-    pair.beyond = thorough[k] < kBeyond * questions[k].wanted;
+    pair.beyond = thorough[k] - before[k] < kBeyond * (questions[k].wanted - before[k]);
     if (!pair.beyond) task.questions.push_back(questions[k]);
     result.pairs.push_back(std::move(pair));
   }

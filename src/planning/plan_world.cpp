@@ -22,18 +22,22 @@ void add_truth(const TrueMotion& motion, Recording& recording) {
   }
 }
 
-/// Columns as the recordings call them, those alone that are asked for or constant.
+/// Columns that nobody sets, as the recordings call them.
 void name_columns(const PlanWorld& world, Recording& recording) {
-  for (const Covariate& one : world.constants) {
-    const double value = one.values.front();
+  for (const ColumnInTime& one : world.columns) {
+    std::vector<double> values;
+    std::size_t at = 0;
+    for (const double t : recording.drive.t) {
+      while (at + 1 < one.from.size() && one.from[at + 1] <= t) ++at;
+      values.push_back(one.values[at]);
+    }
     const auto there =
         std::find_if(recording.drive.covariates.begin(), recording.drive.covariates.end(),
                      [&one](const Covariate& other) { return other.name == one.name; });
-    const std::vector<double> values(recording.drive.rows(), value);
     if (there == recording.drive.covariates.end()) {
-      recording.drive.covariates.push_back({one.name, values});
+      recording.drive.covariates.push_back({one.name, std::move(values)});
     } else {
-      there->values = values;
+      there->values = std::move(values);
     }
   }
 }

@@ -22,6 +22,13 @@ struct LoadLevels {
   std::vector<double> levels;
 };
 
+/// A column as it goes by itself: what it is from each time [s] on, the last value for ever.
+struct ColumnInTime {
+  std::string name;
+  std::vector<double> from;
+  std::vector<double> values;
+};
+
 struct PlanWorld {
   Mesh mesh;                            ///< names, places; those seen from afar among them
   std::vector<std::vector<int>> exits;  ///< per landmark, to where routes lead
@@ -32,7 +39,7 @@ struct PlanWorld {
   std::vector<double> speeds;           ///< m/s: slow, usual, limit
   std::vector<double> turn_rates;       ///< rad/s: slow, fast
   std::vector<LoadLevels> loads;
-  std::vector<Covariate> constants;  ///< one value each: columns that nobody sets
+  std::vector<ColumnInTime> columns;  ///< that nobody sets: they go on as they were recorded
 };
 
 /// What the robot records of the plan without noise; the survey has all landmarks, exactly.

@@ -123,7 +123,9 @@ void learn_rates(const FitState& fit, double max_speed, PlanWorld& world) {
   world.speeds = {slow, std::max(slow, usual), limit};
   const double fast_turn = quantile_of(rates, 0.95, 0.8);
   world.turn_rates = {std::min(quantile_of(rates, 0.05, 0.3), 0.5 * fast_turn), fast_turn};
-  const auto digits = [](double value) { return std::max(0.01, std::round(100.0 * value) / 100.0); };
+  const auto digits = [](double value) {
+    return std::max(0.01, std::round(100.0 * value) / 100.0);
+  };
   for (double& one : world.speeds) one = digits(one);
   for (double& one : world.turn_rates) one = digits(one);
 }
@@ -149,8 +151,8 @@ void learn_sensors(const FitState& fit, PlanWorld& world) {
     if (fit.used.fixes && recording.fixes.size() > 1) {
       const double lasted = recording.fixes.back().t - recording.fixes.front().t;
       if (lasted > 0.0) {
-        robot.fix_rate = std::min(
-            kMostFixRate, static_cast<double>(recording.fixes.size() - 1) / lasted);
+        robot.fix_rate =
+            std::min(kMostFixRate, static_cast<double>(recording.fixes.size() - 1) / lasted);
       }
     }
   }
@@ -168,6 +170,17 @@ bool is_load(const std::string& name) {
   return false;
 }
 
+/// From the drive's start on, changes alone.
+ColumnInTime as_recorded(const Covariate& column, const MotionRows& drive) {
+  ColumnInTime result{column.name, {}, {}};
+  for (std::size_t row = 0; row < column.values.size(); ++row) {
+    if (!result.values.empty() && result.values.back() == column.values[row]) continue;
+    result.from.push_back(drive.t[row] - drive.start());
+    result.values.push_back(column.values[row]);
+  }
+  return result;
+}
+
 void learn_columns(const FitState& fit, const std::vector<std::string>& variables,
                    PlanWorld& world) {
   const auto& reserved = reserved_variables();
@@ -180,7 +193,7 @@ void learn_columns(const FitState& fit, const std::vector<std::string>& variable
     if (asked && distinct.size() > 1 && (is_load(name) || distinct.size() == 2)) {
       world.loads.push_back({name, {*distinct.begin(), *distinct.rbegin()}});
     } else {
-      world.constants.push_back({name, {column.values.back()}});
+      world.columns.push_back(as_recorded(column, fit.recordings.back().drive));
     }
   }
 }

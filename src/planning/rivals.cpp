@@ -3,6 +3,7 @@
 #include "planning/rivals.hpp"
 
 #include "criticism/score_test.hpp"
+#include "linalg/dense.hpp"
 #include "trussmap/catalogue.hpp"
 
 #include <algorithm>
@@ -47,6 +48,21 @@ std::vector<Effect> open_rivals(const Diagnosis& diagnosis) {
       "expected rivals to be named");
 }
 
+/// Whether what is missing is a rival by another name: most of one's trace is the other's.
+bool is_another_name(const Finding& missing, const std::vector<Effect>& rivals,
+                     const ScoreTest& tests) {
+  constexpr double kMostly = 0.7;
+  const Eigen::MatrixXd M = tests.projected(tests.columns(missing.effect));
+  const Eigen::VectorXd trace =
+      M * Eigen::Map<const Eigen::VectorXd>(missing.joint.data(), M.cols());
+  return std::any_of(rivals.begin(), rivals.end(), [&](const Effect& rival) {
+    const Eigen::MatrixXd R = tests.projected(tests.columns(rival));
+    const Eigen::VectorXd own = R.rowwise().sum();
+    return (R * least_squares(R, trace)).norm() >= kMostly * trace.norm() ||
+           (M * least_squares(M, own)).norm() >= kMostly * own.norm();
+  });
+}
+
 }  // namespace
 
 bool speaks_of_sessions(const Effect& effect) {
@@ -86,17 +102,18 @@ RivalSubject rivals_of(const Diagnosis& diagnosis, const PlanOptions& options) {
   ScoreTest tests(fit);
   for (const Finding& one : diagnosis.findings) {
     if (one.joint.empty() || is_among(one.effect, subject.rivals)) continue;
-    const bool like_a_rival =
-        std::any_of(one.look_alikes.begin(), one.look_alikes.end(), [&](const LookAlike& other) {
-          return is_among(other.effect, subject.rivals);
-        });
-    if (like_a_rival) continue;
+    if (is_another_name(one, subject.rivals, tests)) continue;
     subject.beside.push_back(one.effect);
     tests.condition_on(tests.columns(one.effect));
   }
   double most = 0.0;
   const std::vector<Score> scores = tests.test(subject.rivals);
   for (std::size_t k = 0; k < scores.size(); ++k) {
+    if (scores[k].dof == 0) {
+      throw std::invalid_argument(
+          "the recordings show nothing of " + subject.rivals[k].name +
+          ", so that it is not known how large it would be; expected rivals that they show");
+    }
     subject.rivals[k].coefficients = scores[k].coefficients;
     subject.scores.push_back(scores[k].score);
     most = std::max(most, scores[k].score);

@@ -7,9 +7,10 @@
 #include "trussmap/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
-#include <array>
+#include <functional>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -17,10 +18,9 @@
 namespace trussmap {
 namespace {
 
-constexpr double kLeastGain = 1e-5;    // of a score, that a leg is worth
-constexpr int kRefinements = 3;        // manoeuvres changed on a leg
-constexpr std::size_t kAtOnce = 8;     // tours that are looked at together
-constexpr std::size_t kMostLegs = 40;
+constexpr double kLeastGain = 1e-5;  // of a score, that a leg is worth
+constexpr int kRefinements = 3;      // manoeuvres changed on a leg
+constexpr std::size_t kAtOnce = 8;   // tours that are looked at together
 constexpr std::size_t kThoroughLegs = 24;
 
 void weigh(const SearchTask& task, TourValue& value) {
@@ -40,10 +40,11 @@ class Search {
   explicit Search(const SearchTask& task) : task_(task) {}
 
   FoundTour run() {
-    FoundTour found{{task_.world.start, {}}, {}};
+    FoundTour found{{task_.world.start, {}}, {}, {}};
     found.value.lambdas = lambdas_of(task_, gram_before(task_));
     weigh(task_, found.value);
-    while (found.value.least < 1.0 && found.tour.legs.size() < kMostLegs) {
+    const std::size_t most = task_.goes_on ? kMostLegsAlong : kMostLegs;
+    while (found.value.least < 1.0 && found.tour.legs.size() < most) {
       std::optional<FoundTour> next = extended(found);
       if (!next) break;
       found = std::move(*next);
@@ -57,29 +58,65 @@ class Search {
     return value.time <= task_.most_time && value.length <= task_.most_length;
   }
 
-  /// Values of several tours; nothing of those that cannot be driven, or take too long.
-  [[nodiscard]] std::vector<std::optional<TourValue>> values(
-      const std::vector<PlannedTour>& tours) const {
-    std::vector<std::optional<TourValue>> all(tours.size());
+  using Informing = std::function<std::optional<DriveInformation>(const PlannedTour&)>;
+
+  /// Several tours, of which `informs` says what they tell; nothing of those that cannot be driven,
+  /// or take too long.
+  [[nodiscard]] std::vector<std::optional<FoundTour>> found_by(
+      const std::vector<PlannedTour>& tours, const Informing& informs) const {
+    std::vector<std::optional<FoundTour>> all(tours.size());
     parallel_for(tours.size(), [&](std::size_t k) {
-      all[k] = value_of(task_, tours[k]);
-      if (all[k] && !within(*all[k])) all[k].reset();
+      const DrivePlan plan = plan_of(task_.world, tours[k]);
+      FoundTour found{tours[k], {}, {}};
+      found.value.time = plan_duration(plan);
+      found.value.length = plan_length(plan);
+      if (!within(found.value)) return;
+      std::optional<DriveInformation> told = informs(tours[k]);
+      if (!told) return;
+      found.told = std::move(*told);
+      found.value.lambdas = lambdas_of(task_, gram_of(sum_of(task_.known, found.told)));
+      weigh(task_, found.value);
+      all[k] = std::move(found);
     });
     return all;
+  }
+
+  [[nodiscard]] std::vector<std::optional<FoundTour>> exactly(
+      const std::vector<PlannedTour>& tours) const {
+    return found_by(tours, [this](const PlannedTour& one) { return told_by(task_, one); });
+  }
+
+  /// What tours tell that go on from this one by a leg: from the leg before it on.
+  [[nodiscard]] Informing going_on_from(const FoundTour& found) const {
+    const std::size_t legs = found.tour.legs.size();
+    if (task_.goes_on || legs < 2) {
+      return [this](const PlannedTour& one) { return told_by(task_, one); };
+    }
+    const PlannedTour last{found.tour.landmark(legs - 1), {found.tour.legs.back()}};
+    const auto alone = told_by(task_, last);
+    return [this, &found, last, alone](const PlannedTour& one) -> std::optional<DriveInformation> {
+      PlannedTour both = last;
+      both.legs.push_back(one.legs.back());
+      std::optional<DriveInformation> more = told_by(task_, both);
+      if (!more || !alone) return std::nullopt;
+      DriveInformation less = *alone;
+      less.H = -less.H;
+      return sum_of(sum_of(found.told, *more), less);
+    };
   }
 
   /// The best by gain per second over `before`; nothing where none gains.
   [[nodiscard]] std::optional<FoundTour> best_of(const FoundTour& before,
                                                  const std::vector<PlannedTour>& tours,
+                                                 const Informing& informs,
                                                  double than = 0.0) const {
-    const std::vector<std::optional<TourValue>> all = values(tours);
     std::optional<FoundTour> best;
-    for (std::size_t k = 0; k < tours.size(); ++k) {
-      if (!all[k] || all[k]->score < before.value.score + kLeastGain) continue;
-      const double rate = rate_of(before.value, *all[k]);
+    for (std::optional<FoundTour>& one : found_by(tours, informs)) {
+      if (!one || one->value.score < before.value.score + kLeastGain) continue;
+      const double rate = rate_of(before.value, one->value);
       if (rate <= than * (1.0 + 1e-9)) continue;
       than = rate;
-      best = FoundTour{tours[k], *all[k]};
+      best = std::move(one);
     }
     return best;
   }
@@ -101,16 +138,17 @@ class Search {
       add(plain);
       for (const Manoeuvre& other : variants_of(task_.world, plain)) add(other);
     }
-    std::optional<FoundTour> best = best_of(found, tours);
+    const Informing informs = going_on_from(found);
+    std::optional<FoundTour> best = best_of(found, tours, informs);
     for (int pass = 0; best && pass < kRefinements; ++pass) {
       tours.clear();
       for (const Manoeuvre& other : variants_of(task_.world, best->tour.legs.back())) add(other);
       std::optional<FoundTour> better =
-          best_of(found, tours, rate_of(found.value, best->value));
+          best_of(found, tours, informs, rate_of(found.value, best->value));
       if (!better) break;
       best = std::move(better);
     }
-    return best;
+    return best ? exactly({best->tour}).front() : std::nullopt;
   }
 
   /// Tours that are the same with something left out: a loop, the last leg, a manoeuvre.
@@ -155,9 +193,8 @@ class Search {
         for (std::size_t k = first; k < std::min(order.size(), first + kAtOnce); ++k) {
           some.push_back(tours[order[k].second]);
         }
-        const std::vector<std::optional<TourValue>> all = values(some);
-        for (std::size_t k = 0; k < some.size() && !shorter; ++k) {
-          if (all[k] && all[k]->least >= 1.0) shorter = FoundTour{some[k], *all[k]};
+        for (std::optional<FoundTour>& one : exactly(some)) {
+          if (!shorter && one && one->value.least >= 1.0) shorter = std::move(one);
         }
       }
       if (!shorter) return;
@@ -175,8 +212,8 @@ Eigen::MatrixXd gram_before(const SearchTask& task) {
 }
 
 Eigen::MatrixXd gram_with(const SearchTask& task, const PlanWorld& world, const DrivePlan& plan) {
-  return gram_of(sum_of(task.known, information_of(planned_fit(world, plan),
-                                                   {task.effects, task.own, false})));
+  return gram_of(sum_of(task.known,
+                        information_of(planned_fit(world, plan), {task.effects, task.own, false})));
 }
 
 std::vector<double> lambdas_of(const SearchTask& task, const Eigen::MatrixXd& gram) {
@@ -187,20 +224,15 @@ std::vector<double> lambdas_of(const SearchTask& task, const Eigen::MatrixXd& gr
   return lambdas;
 }
 
-std::optional<TourValue> value_of(const SearchTask& task, const PlannedTour& tour) {
-  const DrivePlan plan = plan_of(task.world, tour);
-  TourValue value;
+std::optional<DriveInformation> told_by(const SearchTask& task, const PlannedTour& tour) {
   try {
-    value.lambdas = lambdas_of(task, gram_with(task, task.world, plan));
+    return information_of(planned_fit(task.world, plan_of(task.world, tour)),
+                          {task.effects, task.own, false});
   } catch (const std::invalid_argument&) {  // a bend sharper than the robot's, and the like
     return std::nullopt;
   } catch (const SolveError&) {
     return std::nullopt;
   }
-  value.time = plan_duration(plan);
-  value.length = plan_length(plan);
-  weigh(task, value);
-  return value;
 }
 
 FoundTour search_tour(const SearchTask& task) {
@@ -223,7 +255,7 @@ PlannedTour thorough_tour(const PlanWorld& world) {
     leg.rate = world.turn_rates[(k / 2) % world.turn_rates.size()];
     leg.turns = std::array<int, 4>{2, -2, 0, 0}[k % 4];
     leg.bend = std::array<double, 5>{0.0, 0.0, 0.8, 0.0, -0.8}[k % 5];
-    leg.stand = k % 6 == 5 ? 30.0 : 0.0;
+    leg.stand = k == 5 ? 300.0 : k % 6 == 5 ? 30.0 : 0.0;
     for (std::size_t load = 0; load < world.loads.size(); ++load) {
       const std::vector<double>& levels = world.loads[load].levels;
       leg.loads[load] = levels[(k / (load + 3)) % levels.size()];

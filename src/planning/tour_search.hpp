@@ -10,12 +10,15 @@
 //           is shorter
 //
 // A value is exact: the tour is simulated, its rows and those of the recordings are taken together
-// (drive_information.hpp). Cost: a few hundred such values.
+// (drive_information.hpp). Only while a leg is chosen, what it adds is taken from itself and the
+// leg before alone, where nothing that is asked goes with the time or the distance since the start.
+// Cost: some ten values per leg that a tour has, and hundreds while it is made shorter.
 #pragma once
 
 #include "planning/manoeuvres.hpp"
 #include "planning/separation.hpp"
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -24,7 +27,7 @@ namespace trussmap {
 
 struct SearchTask {
   const PlanWorld& world;
-  DriveInformation known;  ///< of the recordings and the survey
+  DriveInformation known;       ///< of the recordings and the survey
   std::vector<Effect> effects;  ///< whose columns follow the landmarks
   std::vector<Effect> own;      ///< fitted beside in each drive anew
   std::vector<Question> questions;
@@ -32,6 +35,7 @@ struct SearchTask {
   double phi = 1.0;
   double most_time = std::numeric_limits<double>::infinity();    ///< s
   double most_length = std::numeric_limits<double>::infinity();  ///< m
+  bool goes_on = true;  ///< something asked goes with the time or the distance since the start
 };
 
 struct TourValue {
@@ -48,13 +52,18 @@ struct TourValue {
                                         const DrivePlan& plan);
 [[nodiscard]] std::vector<double> lambdas_of(const SearchTask& task, const Eigen::MatrixXd& gram);
 
-/// Nothing where the robot cannot drive it.
-[[nodiscard]] std::optional<TourValue> value_of(const SearchTask& task, const PlannedTour& tour);
+/// What is told by a tour alone; nothing where the robot cannot drive it.
+[[nodiscard]] std::optional<DriveInformation> told_by(const SearchTask& task,
+                                                      const PlannedTour& tour);
 
 struct FoundTour {
   PlannedTour tour;
   TourValue value;
+  DriveInformation told;  ///< by the tour alone
 };
+
+inline constexpr std::size_t kMostLegs = 60;
+inline constexpr std::size_t kMostLegsAlong = 24;  ///< where each value is of the whole tour
 
 [[nodiscard]] FoundTour search_tour(const SearchTask& task);
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMostPairs = 12;    // listed
 constexpr std::size_t kMostEffects = 12;  // likewise, the worst
-constexpr double kWorth = 1.3;            // factor of lambda that an instrument is worth its name for
+constexpr double kWorth = 1.3;  // factor of lambda that an instrument is worth its name for
 constexpr double kWorthless = 1.05;
 
 std::string minutes(double seconds) {
@@ -55,9 +55,10 @@ std::string plan_verdict(const PlannedDrive& drive, TextStyle style) {
   std::string text =
       drive.enough
           ? fmt::format("part: {} {} as far as drives do, power {:.2f}", size, what, drive.power)
-          : fmt::format("short: {} is the most within the limits, power {:.2f} where {:.2f} is "
-                        "wished",
-                        size, drive.power, drive.options.power);
+          : fmt::format(
+                "short: {} is the best within the limits, power {:.2f} where {:.2f} is "
+                "wished",
+                size, drive.power, drive.options.power);
   if (beyond > 0) {
     text += fmt::format("; {} of {} {} beyond any drive here", beyond, all,
                         rivals ? "pairs of rivals are" : "effects are");
@@ -66,14 +67,14 @@ std::string plan_verdict(const PlannedDrive& drive, TextStyle style) {
 }
 
 std::string pairs_part(const PlannedDrive& drive, TextStyle style) {
-  TextTable table{{Align::left, Align::left, Align::right, Align::right, Align::right, Align::right},
-                  {{"if it is", "and not", "lambda", "with it", "power", "with it"}},
-                  true,
-                  2};
+  TextTable table{
+      {Align::left, Align::left, Align::right, Align::right, Align::right, Align::right},
+      {{"if it is", "and not", "lambda", "with it", "power", "with it"}},
+      true,
+      2};
   std::vector<PlannedPair> pairs = drive.pairs;
-  std::stable_sort(pairs.begin(), pairs.end(), [](const PlannedPair& a, const PlannedPair& b) {
-    return a.power < b.power;
-  });
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const PlannedPair& a, const PlannedPair& b) { return a.power < b.power; });
   for (const PlannedPair& one : pairs) {
     if (table.rows.size() > kMostPairs) break;
     table.rows.push_back({one.truth.name, one.rival.name, lambda_text(one.before),
@@ -113,6 +114,7 @@ std::string effects_part(const PlannedDrive& drive, TextStyle style) {
 std::string turn_text(const Waypoint& one) {
   if (one.turn == 0.0) return "";
   const double degrees = one.turn * 180.0 / std::numbers::pi;
+  if (std::abs(degrees) < 0.5) return "";
   return fmt::format("{:.0f} deg {} at {:g} rad/s", std::abs(degrees),
                      degrees > 0.0 ? "left" : "right", one.turn_rate);
 }
@@ -134,9 +136,11 @@ std::string steps_part(const DrivePlan& plan, TextStyle style) {
     const Waypoint& one = plan.waypoints[k];
     std::string comes = k == 0 ? "" : fmt::format("{:g} m/s", one.speed);
     if (one.bend != 0.0) comes += one.bend > 0.0 ? ", bends left" : ", bends right";
-    std::vector<std::string> row = {std::to_string(k + 1), one.landmark,
+    std::vector<std::string> row = {std::to_string(k + 1),
+                                    one.landmark,
                                     fmt::format("{:.2f}", one.place.x()),
-                                    fmt::format("{:.2f}", one.place.y()), comes,
+                                    fmt::format("{:.2f}", one.place.y()),
+                                    comes,
                                     one.stop > 0.0 ? fmt::format("{:g} s", one.stop) : "",
                                     turn_text(one)};
     for (const double load : one.loads) row.push_back(fmt::format("{:g}", load));
@@ -153,8 +157,8 @@ std::string worth_part(const PlannedDrive& drive) {
     if (one.there) continue;
     const std::string name(name_of(one.instrument));
     if (one.tells > 0) {
-      useful.push_back(fmt::format("{} (tells {} of the {} that no drive does)", name, one.tells,
-                                   beyond));
+      useful.push_back(
+          fmt::format("{} (tells {} of the {} that no drive does)", name, one.tells, beyond));
     } else if (one.factor >= kWorth && useful.size() < 2) {
       useful.push_back(fmt::format("{} (lambda times {:.1f}, standard errors times {:.2f})", name,
                                    one.factor, 1.0 / std::sqrt(one.factor)));
@@ -164,13 +168,10 @@ std::string worth_part(const PlannedDrive& drive) {
   }
   std::string text = "\n";
   if (!useful.empty()) {
-    text += fmt::format("  Of more instruments on the same drive would help: {}.\n",
-                        fmt::join(useful, "; "));
+    text += fmt::format("  On the same drive would help: {}.\n", fmt::join(useful, "; "));
   }
   if (!useless.empty()) {
-    text += fmt::format("  {}: {} would not.\n",
-                        useful.empty() ? "Of more instruments none helps much" : "Of no use",
-                        fmt::join(useless, ", "));
+    text += fmt::format("  Of no use here: {}.\n", fmt::join(useless, ", "));
   }
   return text == "\n" ? "" : text;
 }

@@ -94,8 +94,8 @@ std::string simulation_text(const SimulatedRecording& simulated, const Simulatio
   const std::string where = settings.plan && settings.places_of_plan
                                 ? "on its own landmarks"
                                 : fmt::format("of a {} mesh", settings.mesh);
-  std::string text = fmt::format("simulated: {} {}{}\n\n", what, where,
-                                 folder.empty() ? "" : ", in " + folder);
+  std::string text =
+      fmt::format("simulated: {} {}{}\n\n", what, where, folder.empty() ? "" : ", in " + folder);
   const auto line = [&text](const char* name, const std::string& value, const char* unit = "") {
     text += fmt::format("  {:<10} {:>10}{}{}\n", name, value, *unit == '\0' ? "" : " ", unit);
   };

@@ -34,8 +34,7 @@ inline constexpr auto kDescribed<PlannedEffect> = described(
     field("channel", through(&PlannedEffect::effect, &Effect::channel), kWhatChannel),
     field("practical_size", &PlannedEffect::size, "largest |g|, in the channel's unit")
         .at_least(0.0),
-    field("lambda", &PlannedEffect::lambda, "noncentrality of its test at that size")
-        .at_least(0.0),
+    field("lambda", &PlannedEffect::lambda, "noncentrality of its test at that size").at_least(0.0),
     share("power", &PlannedEffect::power, "chance that the test names it"),
     field("beyond", &PlannedEffect::beyond, "no drive on these routes shows it"));
 
@@ -54,8 +53,10 @@ inline constexpr auto kDescribed<InstrumentWorth> = described(
 template <>
 inline constexpr auto kDescribed<Waypoint> = described(
     field("landmark", &Waypoint::landmark, "its name"),
-    field("x_m", [](const Waypoint& one) { return one.place.x(); }, "map frame"),
-    field("y_m", [](const Waypoint& one) { return one.place.y(); }, "map frame"),
+    field(
+        "x_m", [](const Waypoint& one) { return one.place.x(); }, "map frame"),
+    field(
+        "y_m", [](const Waypoint& one) { return one.place.y(); }, "map frame"),
     field("heading_rad", &Waypoint::heading, "as the robot leaves; at the last as it comes"),
     field("speed_m_s", &Waypoint::speed, "on the way to it; 0 at the first").at_least(0.0),
     field("bend_rad", &Waypoint::bend, "turned on the way to it, + to the left"),
@@ -89,16 +90,18 @@ inline constexpr auto kDescribed<PlanReport> = described(
           "chance that a wrong rival is preferred"),
     field("pairs", kPlanned<&PlannedDrive::pairs>, "of rivals"),
     field("effects", kPlanned<&PlannedDrive::effects>, "of an acceptance test"),
-    field("loads",
-          [](const PlanReport& one) -> const std::vector<std::string>& {
-            return one.drive->plan.loads;
-          },
-          "columns that the driver sets"),
-    field("waypoints",
-          [](const PlanReport& one) -> const std::vector<Waypoint>& {
-            return one.drive->plan.waypoints;
-          },
-          "in the order driven"),
+    field(
+        "loads",
+        [](const PlanReport& one) -> const std::vector<std::string>& {
+          return one.drive->plan.loads;
+        },
+        "columns that the driver sets"),
+    field(
+        "waypoints",
+        [](const PlanReport& one) -> const std::vector<Waypoint>& {
+          return one.drive->plan.waypoints;
+        },
+        "in the order driven"),
     field("instruments", kPlanned<&PlannedDrive::worth>,
           "what each would change on the same drive, the most useful first"),
     field(

@@ -56,13 +56,14 @@ void check_style(const DrivingStyle& style) {
 void check_orders(const DrivingStyle& style, std::size_t legs) {
   require(std::isfinite(style.first_heading), "the first heading must be a number of rad");
   if (style.orders.empty()) return;
-  require(style.orders.size() == legs, fmt::format("{} legs are ordered, expected {}, one each",
-                                                   style.orders.size(), legs));
+  require(style.orders.size() == legs,
+          fmt::format("{} legs are ordered, expected {}, one each", style.orders.size(), legs));
   for (const LegOrder& one : style.orders) {
     require(is_range(one.speed, one.speed), "a leg's speed must be above 0 m/s");
     require(is_range(one.turn_rate, one.turn_rate), "a turn's rate must be above 0 rad/s");
     require(one.rest >= 0.0 && one.rest <= 1e5, "a rest must lie between 0 and 1e5 s");
-    require(std::abs(one.turn) <= kMostTurn, fmt::format("a turn must be {} rad at most", kMostTurn));
+    require(std::abs(one.turn) <= kMostTurn,
+            fmt::format("a turn must be {} rad at most", kMostTurn));
     require(std::abs(one.bend) <= 1.0, "a leg must bend by a radian at most");
     require(one.further.size() == style.covariates.size(),
             "a leg needs a value of each further column");

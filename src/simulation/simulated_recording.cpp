@@ -158,8 +158,8 @@ LegOrder order_of(const DrivePlan& plan, std::size_t leg,
 DrivingStyle style_of_plan(const DrivePlan& plan, DrivingStyle style) {
   for (const std::string& name : plan.loads) {
     const bool own = name == "payload_kg" || name == "lights";
-    const bool there = std::find(style.covariates.begin(), style.covariates.end(), name) !=
-                       style.covariates.end();
+    const bool there =
+        std::find(style.covariates.begin(), style.covariates.end(), name) != style.covariates.end();
     if (!own && !there) style.covariates.push_back(name);
   }
   style.orders.clear();
@@ -201,9 +201,8 @@ SimulatedRecording simulate(const SimulationSettings& settings,
   result.mesh = own_places ? mesh_of(*settings.plan) : make_mesh(settings);
   std::mt19937_64 random = random_stream(settings.seed, Stream::walk);
   const Tours tours =
-      own_places
-          ? Tours{walk_of(*settings.plan, result.mesh), {}}
-          : make_tours(result.mesh, parse_walk_kind(settings.walk), settings.tours, random);
+      own_places ? Tours{walk_of(*settings.plan, result.mesh), {}}
+                 : make_tours(result.mesh, parse_walk_kind(settings.walk), settings.tours, random);
   const WheeledRobot robot = make_robot(settings);
   if (settings.hide) {
     result.effects = draw_hidden_effects(result.mesh, tours.walk, make_style(settings, {}), robot,
@@ -218,8 +217,7 @@ SimulatedRecording simulate(const SimulationSettings& settings,
     // The place was surveyed once.
     result.drive.recording.survey = survey(result.mesh, robot, settings.seed);
   } else {
-    result.drive =
-        simulate_drive(result.mesh, tours.walk, style, robot, settings.seed, acting);
+    result.drive = simulate_drive(result.mesh, tours.walk, style, robot, settings.seed, acting);
   }
   if (settings.no_survey) result.drive.recording.survey.clear();
   result.model = nominal_model(settings);

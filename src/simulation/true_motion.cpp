@@ -352,8 +352,7 @@ class Path {
   /// Returns where the leg has to lead then, m. `rate` [rad/s]: none: drawn.
   Vector2 spin_to(const PlannedLeg& leg, std::optional<double> rate = {}, double about = 0.0) {
     Vector2 way = way_after_spin(leg, about, so_far_, rules_.bias);
-    so_far_.spin(turn_to(way, leg.shape, so_far_.pose(), about),
-                 rate ? *rate : draws_.turn_rate());
+    so_far_.spin(turn_to(way, leg.shape, so_far_.pose(), about), rate ? *rate : draws_.turn_rate());
     return way;
   }
 
