@@ -27,8 +27,9 @@ using testing::run_trussmap;
 using testing::ScratchFolder;
 
 const std::vector<std::string> kCommands = {
-    "add", "adjust", "build", "calibrate", "compare",  "convert", "diagnose", "discover", "effects",
-    "fit", "merge",  "noise", "reveal",    "simulate", "tape",    "tour",     "umbmark",  "watch"};
+    "add",      "adjust",  "build", "calibrate", "compare", "convert", "diagnose",
+    "discover", "effects", "fit",   "merge",     "noise",   "plan",    "reveal",
+    "simulate", "tape",    "tour",  "umbmark",   "watch"};
 
 TEST(Command, HelpIsThereForEveryCommand) {
   const std::string all = run_trussmap("--help").output;
