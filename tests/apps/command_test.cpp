@@ -325,7 +325,7 @@ TEST(Command, AWordThatIsNoCommandIsNamed) {
             "calibrate, check, "
             "compare, completion, convert, diagnose, discover, effects, explore, fit, fleet, "
             "manual, merge, "
-            "noise, "
+            "noise, plan, "
             "reveal, schema, serve, simulate, tape, tour, umbmark, watch\n");
 }
 
