@@ -155,6 +155,22 @@ Asked questions_of(const std::vector<PlannedEffect>& effects,
   return asked;
 }
 
+/// Of each effect the shape that is seen worst.
+void tell_effects(const Asked& asked, const std::vector<double>& lambdas,
+                  const std::vector<bool>& beyond, PlannedDrive& result) {
+  for (PlannedEffect& one : result.effects) one.power = 1.0;
+  result.power = 1.0;
+  for (std::size_t k = 0; k < lambdas.size(); ++k) {
+    PlannedEffect& one = result.effects[asked.effects[k]];
+    const double power = power_of(asked.questions[k], lambdas[k]);
+    if (power <= one.power) {
+      one.power = power;
+      one.lambda = lambdas[k];
+    }
+    if (!beyond[k]) result.power = std::min(result.power, power);
+  }
+}
+
 }  // namespace
 
 PlannedDrive plan_acceptance(const LandmarkGraph& map, const Model& model,
@@ -195,18 +211,8 @@ PlannedDrive plan_acceptance(const LandmarkGraph& map, const Model& model,
   result.plan = plan_of(world, found.tour);
   result.length = found.value.length;
   result.duration = found.value.time;
-  result.power = 1.0;
   task.questions = asked.questions;
-  const std::vector<double> lambdas = lambdas_of(task, gram_with(task, world, result.plan));
-  for (std::size_t k = 0; k < lambdas.size(); ++k) {
-    PlannedEffect& one = result.effects[asked.effects[k]];
-    const double power = power_of(asked.questions[k], lambdas[k]);
-    if (one.power == 0.0 || power < one.power) {
-      one.power = power;
-      one.lambda = lambdas[k];
-    }
-    if (!beyond[k]) result.power = std::min(result.power, power);
-  }
+  tell_effects(asked, lambdas_of(task, gram_with(task, world, result.plan)), beyond, result);
   result.worth = worth_of_instruments(task, result.plan, beyond);
   return result;
 }

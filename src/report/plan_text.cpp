@@ -39,6 +39,13 @@ std::string plan_verdict(const PlannedDrive& drive, TextStyle style) {
   const bool rivals = !drive.pairs.empty();
   const std::size_t beyond = count_beyond(drive);
   const std::size_t all = drive.pairs.size() + drive.effects.size();
+  if (drive.plan.waypoints.empty() && drive.enough) {
+    return verdict_text(Mood::good,
+                        "no drive needed: the recordings tell these rivals apart by the wished "
+                        "power",
+                        style) +
+           "\n";
+  }
   if (drive.plan.waypoints.empty()) {
     const char* what = rivals ? "no drive on these routes tells these rivals apart"
                               : "no drive on these routes shows any of these effects";
