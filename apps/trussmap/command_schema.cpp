@@ -12,6 +12,7 @@
 #include "results/exploration.hpp"
 #include "results/fleet.hpp"
 #include "results/maps.hpp"
+#include "results/plans.hpp"
 #include "results/pose_graphs.hpp"
 #include "results/schema.hpp"
 #include "results/simulation.hpp"
@@ -48,6 +49,7 @@ Json schema() {
   maker.define<results::CatalogueReport>("effects");
   maker.define<results::ExploreReport>("explore");
   maker.define<FleetReport>("fleet-report");
+  maker.define<results::PlanReport>("plan");
   maker.define<results::Revealed>("reveal");
   maker.define<results::SimulationReport>("simulate");
   maker.define<results::TourReport>("tour", "means over the seeds");

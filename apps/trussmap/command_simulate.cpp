@@ -90,6 +90,15 @@ void setup_simulate(const Command& app) {
   command.callback([options, command] {
     check_drive_options(command, *options);
     options->mounted = mounted_by(*options);
+    if (!options->plan_file.empty()) {
+      options->plan = read_plan(options->plan_file);
+      options->places_of_plan = command.count("--mesh") == 0;
+      if (options->places_of_plan && (options->hide || options->uneven)) {
+        throw UsageError(
+            "simulate: --plan with --hide or --uneven is a further drive in a world "
+            "that is drawn, expected its --mesh, too");
+      }
+    }
     if (options->hide && command.count("--seed") == 0) {
       options->seed = std::random_device()();
       options->seed_drawn = true;

@@ -29,6 +29,7 @@ void setup_fleet(const Command& app);
 void setup_manual(const Command& app, const CLI::App& whole);
 void setup_merge(const Command& app);
 void setup_noise(const Command& app);
+void setup_plan(const Command& app);
 void setup_reveal(const Command& app);
 void setup_schema(const Command& app);
 void setup_serve(const Command& app);

@@ -130,6 +130,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_manual(commands, app);
   trussmap::app::setup_merge(commands);
   trussmap::app::setup_noise(commands);
+  trussmap::app::setup_plan(commands);
   trussmap::app::setup_reveal(commands);
   trussmap::app::setup_schema(commands);
   trussmap::app::setup_serve(commands);

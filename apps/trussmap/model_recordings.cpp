@@ -14,9 +14,9 @@
 #include <fmt/format.h>
 
 namespace trussmap::app {
-void add_model_recordings(const Command& command, ModelRecordingsOptions& options) {
+void add_model_recordings(const Command& command, ModelRecordingsOptions& options, bool required) {
   command.add_option("--json", options.json, "Write every figure as JSON").type_name("FILE");
-  add_fitted_recordings(command, options);
+  add_fitted_recordings(command, options, required);
   command
       .add_option("--level", options.level,
                   "Level of significance: chance of an effect, or a misfit, where there is none")
@@ -24,13 +24,16 @@ void add_model_recordings(const Command& command, ModelRecordingsOptions& option
       .capture_default_str();
 }
 
-void add_fitted_recordings(const Command& command, ModelRecordingsOptions& options) {
-  command.add_option("RECORDING", options.recordings, "Folders of CSV files, one per session")
-      .required()
-      .type_name("DIR");
-  command.add_option("--model", options.model, "Model of the robot (TOML)")
-      .required()
-      .type_name("FILE");
+void add_fitted_recordings(const Command& command, ModelRecordingsOptions& options, bool required) {
+  const Option recordings =
+      command.add_option("RECORDING", options.recordings, "Folders of CSV files, one per session")
+          .type_name("DIR");
+  const Option model =
+      command.add_option("--model", options.model, "Model of the robot (TOML)").type_name("FILE");
+  if (required) {
+    recordings.required();
+    model.required();
+  }
   command
       .add_option("--holdout", options.legs.share,
                   "Share of the legs that is held out to judge the model by")

@@ -29,10 +29,12 @@ struct ModelRecordingsOptions {
 /// RECORDING..., --model, --json, --without, --exclude, --min-drive, --leg, --holdout, --gate,
 /// --every,
 /// --level.
-void add_model_recordings(const Command& command, ModelRecordingsOptions& options);
+void add_model_recordings(const Command& command, ModelRecordingsOptions& options,
+                          bool required = true);
 
-/// The same without --json and --level.
-void add_fitted_recordings(const Command& command, ModelRecordingsOptions& options);
+/// The same without --json and --level. `required`: RECORDING and --model are.
+void add_fitted_recordings(const Command& command, ModelRecordingsOptions& options,
+                           bool required = true);
 
 /// --stated-noise.
 void add_stated_noise(const Command& command, ModelRecordingsOptions& options);

@@ -86,6 +86,12 @@ void add_world_options(const Command& command, SimulateOptions& options) {
                   "Stops at which the robot turns round twice to the left and twice to the right")
       .check(whole_number(0))
       .capture_default_str();
+  command
+      .add_option("--plan", options.plan_file,
+                  "Drive these waypoints (trussmap plan --out) in place of tours, as a further "
+                  "session of the world and robot of --seed, with noise of its own; without --mesh "
+                  "the waypoints' own places are the landmarks. Tours then matter for --hide alone")
+      .type_name("FILE");
   add_driving_options(command, options);
 }
 

@@ -19,6 +19,7 @@ struct SimulateOptions : SimulationSettings {
   std::vector<double> sensor = {};   // x, y, yaw
   std::vector<double> antenna = {};  // x, y
   std::vector<double> scanner = {};  // x, y, yaw
+  std::string plan_file;
   std::string out;
   std::string json;
 };

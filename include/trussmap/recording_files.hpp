@@ -10,6 +10,7 @@
 #include "trussmap/fit_model.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
+#include "trussmap/test_path.hpp"
 #include "trussmap/umbmark.hpp"
 #include "trussmap/wheel_noise.hpp"
 #include "trussmap/write_files.hpp"
@@ -128,5 +129,21 @@ struct MeasuredEnds {
 /// With headings where all runs have them.
 [[nodiscard]] std::string format_square_runs(const SquareRuns& runs);
 [[nodiscard]] std::string format_end_errors(const EndErrors& errors);
+
+// ----------------------------------------
+// A planned drive (test_path.hpp) as a table, a row per waypoint, in the order driven:
+//
+//   number,landmark,x,y,heading,speed,bend,turn,turn_rate,stop_s[,LOAD ...]   m, rad, m/s, rad/s, s
+//
+// Columns in any order; all that are named above are columns that the driver sets.
+
+/// Throws InputError with file and line: what CsvReader refuses, fewer than two waypoints, numbers
+/// that do not count from 1, the same landmark twice running, a speed or rate that is not above 0
+/// where something is driven or turned, a bend above a radian.
+[[nodiscard]] DrivePlan read_plan(const std::filesystem::path& file);
+/// Numbers read back exactly.
+[[nodiscard]] std::string format_plan(const DrivePlan& plan);
+/// A FeatureCollection: a Point per waypoint, a LineString per leg; metres in the map frame.
+[[nodiscard]] std::string format_plan_geojson(const DrivePlan& plan);
 
 }  // namespace trussmap

@@ -67,6 +67,10 @@ struct SimulationSettings {
   double scan_every = 0.0;  ///< s: loops from scan to scan; 0: none
   Mountings mounted = {};   ///< where the sensors sit, as stated and in truth
   bool markers = false;     ///< landmarks have an axis
+  /// Driven in place of the tours, in the world of this seed and with its effects, by noise of its
+  /// own: a further session. Without landmarks: of the mesh of these settings.
+  std::optional<DrivePlan> plan = {};
+  bool places_of_plan = false;  ///< the plan's own places are the landmarks, in place of the mesh
 };
 
 /// A recording and what was simulated in it.

@@ -65,6 +65,7 @@ struct Mesh {
   MeshSize size;
   std::vector<Vector2> positions;  ///< true landmark positions, m
   std::vector<MeshRoute> routes;   ///< every pair of neighbours once
+  std::vector<std::string> names;  ///< of the landmarks; empty: by column and row
 
   [[nodiscard]] int landmarks() const { return size.columns * size.rows; }
   [[nodiscard]] int landmark(int column, int row) const { return column * size.rows + row; }
@@ -98,7 +99,7 @@ struct Mesh {
 /// must leave neighbours apart: below half the shortest route.
 [[nodiscard]] Mesh jittered(Mesh mesh, double reach, std::mt19937_64& random);
 
-/// "L{column}_{row}".
+/// "L{column}_{row}", where it has no name of its own.
 [[nodiscard]] std::string landmark_name(const Mesh& mesh, int landmark);
 
 /// Length of the shortest route, m.
@@ -127,6 +128,25 @@ struct Tours {
 /// that starts at v0 is reached by the shortest way.
 [[nodiscard]] Tours make_tours(const Mesh& mesh, WalkKind kind, int count, std::mt19937_64& random);
 
+/// What else was the case during a row: the covariate columns.
+struct Surroundings {
+  double payload_kg = 0.0;
+  double lights = 0.0;  ///< 1 switched on, 0 off
+  double temperature_C = 20.0;
+};
+
+/// How a leg is to be driven, in place of what would be drawn: the robot stands, turns on the spot
+/// (in circles where it cannot), drives.
+struct LegOrder {
+  double rest = 0.0;            ///< s
+  double turn = 0.0;            ///< rad, + to the left; what is needed to set out, and whole turns
+  double turn_rate = 0.5;       ///< rad/s
+  double speed = 0.5;           ///< m/s
+  double bend = 0.0;            ///< rad that it turns on its way, + to the left, at most a radian
+  Surroundings surroundings;    ///< from its rest on; the temperature goes its own way
+  std::vector<double> further;  ///< values of DrivingStyle::covariates
+};
+
 /// How the robot drives. Ranges are drawn from uniformly, anew for each leg or spin.
 struct DrivingStyle {
   double row_duration = 0.1;       ///< s
@@ -149,13 +169,8 @@ struct DrivingStyle {
   double overrun = 0.0;     ///< m driven straight on after each landmark, before the spin
   double ramp = 0.0;        ///< s in which a drive reaches its speed, and leaves it
   std::vector<std::string> covariates;  ///< further columns: anew at one stop in two, from 0 to 1
-};
-
-/// What else was the case during a row: the covariate columns.
-struct Surroundings {
-  double payload_kg = 0.0;
-  double lights = 0.0;  ///< 1 switched on, 0 off
-  double temperature_C = 20.0;
+  std::vector<LegOrder> orders;         ///< one per leg of the walk; empty: all is drawn
+  double first_heading = 0.0;           ///< rad
 };
 
 enum class Activity { rest, spin, drive };
@@ -287,17 +302,28 @@ struct SimulatedDrive {
 };
 
 /// Lays the path along the walk (landmarks of the mesh, successive ones different), records it and
-/// adds the survey. The robot starts on the first landmark with heading 0 at time 0. Under a delay
-/// it rests before the first and after the last sighting, so that they stay within the drive. The
-/// same seed gives the same recording. Throws std::invalid_argument on a walk of fewer than two
-/// landmarks or of some too near each other (below 20 `standing`, 1 cm, or what the robot needs to
-/// turn), a style, robot or noise that makes no sense, and effects that its drive does not have or
-/// that leave no travel, a range of 0 or less or a sighting outside the drive. Of other wheels than
-/// two the recording has the columns alone (with_wheels takes them in).
+/// adds the survey. The robot starts on the first landmark with its first heading at time 0. Under
+/// a delay it rests before the first and after the last sighting, so that they stay within the
+/// drive. The same seed gives the same recording. Throws std::invalid_argument on a walk of fewer
+/// than two landmarks or of some too near each other (below 20 `standing`, 1 cm, or what the robot
+/// needs to turn), a style, robot or noise that makes no sense, and effects that its drive does not
+/// have or that leave no travel, a range of 0 or less or a sighting outside the drive. Of other
+/// wheels than two the recording has the columns alone (with_wheels takes them in).
 [[nodiscard]] SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
                                             const DrivingStyle& style, const WheeledRobot& robot,
                                             std::uint64_t seed,
                                             const SimulatedEffects& effects = {});
+
+/// Drives what is planned, its landmarks found by their names: loads beside payload_kg and lights
+/// become further columns. Throws as simulate_drive does, and where a landmark is none of the
+/// mesh's.
+[[nodiscard]] SimulatedDrive simulate_plan(const Mesh& mesh, const DrivePlan& plan,
+                                           const DrivingStyle& style, const WheeledRobot& robot,
+                                           std::uint64_t seed,
+                                           const SimulatedEffects& effects = {});
+
+/// The style with the plan's orders in it.
+[[nodiscard]] DrivingStyle style_of_plan(const DrivePlan& plan, DrivingStyle style);
 
 /// One or two effects of the catalogue, drawn for a riddle: of a size that a recording of this walk
 /// can show (3 to 6 times what the catalogue calls detectable), and of things that it has: with its

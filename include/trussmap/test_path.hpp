@@ -14,7 +14,17 @@
 //   eight@1   a figure-eight: a circle of radius 1 m to the left, then one to the right
 //
 // "10,-10" is Chong & Kleeman's (1997) experiment: out and back.
+//
+// A drive over a map, as `trussmap plan` lays it, is a list of waypoints instead: landmarks one
+// after the other, what to do at each, and how to come there.
+//
+//        bend         the robot comes at `speed`, turning by `bend` on its way (0: straight), and
+//      .------.       stands on the landmark for `stop`; its loads are changed; it turns on the
+//      spot
+//     o        `o     by `turn`, whole turns included, at `turn_rate`, and leaves at `heading`
 #pragma once
+
+#include "trussmap/planar.hpp"
 
 #include <string>
 #include <vector>
@@ -50,5 +60,27 @@ enum class Direction { cw, ccw };
 /// Throws std::invalid_argument: an empty segment, text, a number that is not finite, no motion at
 /// all. The message names the segment and says what was expected.
 [[nodiscard]] TestPath parse_path(const std::string& text);
+
+struct Waypoint {
+  std::string landmark;
+  Vector2 place = Vector2::Zero();  ///< m, map frame
+  double heading = 0.0;    ///< rad, map frame, in (-pi, pi]: as it leaves, at the last as it comes
+  double speed = 0.0;      ///< m/s, on the way to it; 0 at the first
+  double bend = 0.0;       ///< rad turned on the way to it, + to the left
+  double stop = 0.0;       ///< s that it stands there
+  double turn = 0.0;       ///< rad on the spot, + to the left; at the first whole turns alone
+  double turn_rate = 0.0;  ///< rad/s; 0 where nothing is turned
+  std::vector<double> loads;  ///< as DrivePlan::loads, as it leaves
+};
+
+struct DrivePlan {
+  std::vector<std::string> loads;   ///< columns of the recording that the driver sets: "payload_kg"
+  std::vector<Waypoint> waypoints;  ///< two or more, successive ones at different landmarks
+};
+
+/// Of the ways between waypoints, m: straight, but for their bends.
+[[nodiscard]] double plan_length(const DrivePlan& plan);
+/// Of driving, turning and standing, s.
+[[nodiscard]] double plan_duration(const DrivePlan& plan);
 
 }  // namespace trussmap

@@ -21,6 +21,7 @@
 #include "trussmap/monitor.hpp"
 #include "trussmap/noise_fit.hpp"
 #include "trussmap/pose_graph.hpp"
+#include "trussmap/session.hpp"
 #include "trussmap/simulated_recording.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/umbmark.hpp"
@@ -69,6 +70,9 @@ enum class Mood { good, doubt, bad };
 [[nodiscard]] std::string diagnosis_text(const Diagnosis& result,
                                          const std::vector<NoiseBudget>& budget,
                                          std::size_t list = 8, TextStyle style = TextStyle::plain);
+/// `files`: where the waypoints were written; empty: nowhere.
+[[nodiscard]] std::string plan_text(const PlannedDrive& drive, const std::string& files = "",
+                                    TextStyle style = TextStyle::plain);
 /// `given`: the noise of the model given.
 [[nodiscard]] std::string discovery_text(const Discovery& result, const Noise& given,
                                          const std::vector<NoiseBudget>& budget,

@@ -88,9 +88,14 @@ std::string simulation_text(const SimulatedRecording& simulated, const Simulatio
                             const std::string& folder, TextStyle style) {
   const Recording& recording = simulated.drive.recording;
   const TrueMotion& motion = simulated.drive.motion;
-  std::string text = fmt::format("simulated: {} {} of a {} mesh{}\n\n", settings.tours,
-                                 settings.tours == 1 ? "tour" : "tours", settings.mesh,
-                                 folder.empty() ? "" : ", in " + folder);
+  const std::string what =
+      settings.plan ? fmt::format("a plan of {} waypoints", settings.plan->waypoints.size())
+                    : fmt::format("{} {}", settings.tours, settings.tours == 1 ? "tour" : "tours");
+  const std::string where = settings.plan && settings.places_of_plan
+                                ? "on its own landmarks"
+                                : fmt::format("of a {} mesh", settings.mesh);
+  std::string text =
+      fmt::format("simulated: {} {}{}\n\n", what, where, folder.empty() ? "" : ", in " + folder);
   const auto line = [&text](const char* name, const std::string& value, const char* unit = "") {
     text += fmt::format("  {:<10} {:>10}{}{}\n", name, value, *unit == '\0' ? "" : " ", unit);
   };

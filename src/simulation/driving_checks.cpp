@@ -14,6 +14,8 @@
 namespace trussmap {
 namespace {
 
+constexpr double kMostTurn = 1000.0;  // rad
+
 void require(bool holds, const std::string& what) {
   if (!holds) throw std::invalid_argument(what);
 }
@@ -48,6 +50,23 @@ void check_style(const DrivingStyle& style) {
   for (const double value : {style.first_rest, style.last_rest, style.overrun, style.ramp}) {
     require(value >= 0.0 && value <= 1e5,
             "a rest, an overrun and a ramp must lie between 0 and 1e5, in s, m and s");
+  }
+}
+
+void check_orders(const DrivingStyle& style, std::size_t legs) {
+  require(std::isfinite(style.first_heading), "the first heading must be a number of rad");
+  if (style.orders.empty()) return;
+  require(style.orders.size() == legs,
+          fmt::format("{} legs are ordered, expected {}, one each", style.orders.size(), legs));
+  for (const LegOrder& one : style.orders) {
+    require(is_range(one.speed, one.speed), "a leg's speed must be above 0 m/s");
+    require(is_range(one.turn_rate, one.turn_rate), "a turn's rate must be above 0 rad/s");
+    require(one.rest >= 0.0 && one.rest <= 1e5, "a rest must lie between 0 and 1e5 s");
+    require(std::abs(one.turn) <= kMostTurn,
+            fmt::format("a turn must be {} rad at most", kMostTurn));
+    require(std::abs(one.bend) <= 1.0, "a leg must bend by a radian at most");
+    require(one.further.size() == style.covariates.size(),
+            "a leg needs a value of each further column");
   }
 }
 

@@ -6,11 +6,15 @@
 
 #include "trussmap/simulation.hpp"
 
+#include <cstddef>
 #include <vector>
 
 namespace trussmap {
 
 void check_style(const DrivingStyle& style);
+
+/// As many orders as legs, or none.
+void check_orders(const DrivingStyle& style, std::size_t legs);
 
 /// Lengths above 0, columns as many as the drive has.
 void check_wheels(const Robot& robot);

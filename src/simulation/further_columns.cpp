@@ -60,4 +60,17 @@ std::vector<Covariate> further_columns(const TrueMotion& motion,
   return columns;
 }
 
+std::vector<Covariate> ordered_columns(const TrueMotion& motion, const DrivingStyle& style) {
+  std::vector<Covariate> columns;
+  for (std::size_t k = 0; k < style.covariates.size(); ++k) {
+    Covariate column{style.covariates[k], {}};
+    for (std::size_t leg = 0; leg < style.orders.size(); ++leg) {
+      column.values.resize(motion.stops[leg + 1].rows, style.orders[leg].further[k]);
+    }
+    column.values.resize(motion.rows.size(), style.orders.back().further[k]);
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
 }  // namespace trussmap

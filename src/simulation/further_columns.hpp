@@ -21,4 +21,8 @@ void check_covariates(const std::vector<std::string>& names);
                                                      const std::vector<std::string>& names,
                                                      std::uint64_t seed);
 
+/// The same as the style's orders have them.
+[[nodiscard]] std::vector<Covariate> ordered_columns(const TrueMotion& motion,
+                                                     const DrivingStyle& style);
+
 }  // namespace trussmap

@@ -133,6 +133,7 @@ Mesh jittered(Mesh mesh, double reach, std::mt19937_64& random) {
 }
 
 std::string landmark_name(const Mesh& mesh, int landmark) {
+  if (!mesh.names.empty()) return mesh.names[idx(landmark)];
   return fmt::format("L{}_{}", mesh.column(landmark), mesh.row(landmark));
 }
 

@@ -18,7 +18,7 @@ double temperature(double t, double warm_at) {
 }  // namespace
 
 void MotionSoFar::start_at(const Vector2& position) {
-  pose_ = {position.x(), position.y(), 0.0};
+  pose_ = {position.x(), position.y(), style_.first_heading};
   motion_.start = pose_;
 }
 

@@ -17,7 +17,7 @@ class MotionSoFar {
   MotionSoFar(const DrivingStyle& style, const PathBias& bias, double warm_at)
       : style_(style), bias_(bias), warm_at_(warm_at) {}
 
-  /// With heading 0, at time 0.
+  /// With the style's first heading, at time 0.
   void start_at(const Vector2& position);
   void stop(int landmark);
   void surround(const Surroundings& now) { surroundings_ = now; }

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/simulated_recording.hpp"
 
+#include "simulation/wheeled_robot.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -83,6 +86,100 @@ DrivingStyle make_style(const SimulationSettings& settings, const std::vector<Ef
 
 }  // namespace
 
+namespace {
+
+constexpr std::uint64_t kFurtherSession = 0x9e3779b97f4a7c15U;  // apart from the first one's seed
+
+/// Its landmarks are those of the plan, each where it comes first.
+Mesh mesh_of(const DrivePlan& plan) {
+  Mesh mesh;
+  std::vector<int> walk;
+  for (const Waypoint& one : plan.waypoints) {
+    const auto found = std::find(mesh.names.begin(), mesh.names.end(), one.landmark);
+    walk.push_back(static_cast<int>(found - mesh.names.begin()));
+    if (found != mesh.names.end()) continue;
+    mesh.names.push_back(one.landmark);
+    mesh.positions.push_back(one.place);
+  }
+  for (std::size_t k = 1; k < walk.size(); ++k) {
+    const MeshRoute route{std::min(walk[k - 1], walk[k]), std::max(walk[k - 1], walk[k])};
+    const bool there = std::any_of(
+        mesh.routes.begin(), mesh.routes.end(),
+        [&](const MeshRoute& one) { return one.from == route.from && one.to == route.to; });
+    if (!there) mesh.routes.push_back(route);
+  }
+  mesh.size = {static_cast<int>(mesh.names.size()), 1};
+  return mesh;
+}
+
+std::vector<int> walk_of(const DrivePlan& plan, const Mesh& mesh) {
+  std::map<std::string, int> numbers;
+  for (int k = 0; k < mesh.landmarks(); ++k) numbers[landmark_name(mesh, k)] = k;
+  std::vector<int> walk;
+  for (const Waypoint& one : plan.waypoints) {
+    const auto found = numbers.find(one.landmark);
+    if (found == numbers.end()) {
+      throw std::invalid_argument(
+          fmt::format("the plan's landmark {} is none of the mesh, expected the mesh that it was "
+                      "planned for",
+                      one.landmark));
+    }
+    walk.push_back(found->second);
+  }
+  return walk;
+}
+
+/// What is ordered from one waypoint to the next.
+LegOrder order_of(const DrivePlan& plan, std::size_t leg,
+                  const std::vector<std::string>& covariates) {
+  const Waypoint& from = plan.waypoints[leg];
+  const Waypoint& to = plan.waypoints[leg + 1];
+  LegOrder order;
+  order.rest = from.stop;
+  order.turn = from.turn;
+  if (from.turn_rate > 0.0) order.turn_rate = from.turn_rate;
+  order.speed = to.speed;
+  order.bend = to.bend;
+  order.further.assign(covariates.size(), 0.0);
+  for (std::size_t k = 0; k < plan.loads.size(); ++k) {
+    const double value = from.loads.at(k);
+    const auto column = std::find(covariates.begin(), covariates.end(), plan.loads[k]);
+    if (plan.loads[k] == "payload_kg") order.surroundings.payload_kg = value;
+    if (plan.loads[k] == "lights") order.surroundings.lights = value;
+    if (column != covariates.end()) {
+      order.further[static_cast<std::size_t>(column - covariates.begin())] = value;
+    }
+  }
+  return order;
+}
+
+}  // namespace
+
+DrivingStyle style_of_plan(const DrivePlan& plan, DrivingStyle style) {
+  for (const std::string& name : plan.loads) {
+    const bool own = name == "payload_kg" || name == "lights";
+    const bool there =
+        std::find(style.covariates.begin(), style.covariates.end(), name) != style.covariates.end();
+    if (!own && !there) style.covariates.push_back(name);
+  }
+  style.orders.clear();
+  for (std::size_t leg = 0; leg + 1 < plan.waypoints.size(); ++leg) {
+    style.orders.push_back(order_of(plan, leg, style.covariates));
+  }
+  if (!plan.waypoints.empty()) {
+    const Waypoint& first = plan.waypoints.front();
+    style.first_heading = wrap_angle(first.heading - first.turn);
+  }
+  return style;
+}
+
+SimulatedDrive simulate_plan(const Mesh& mesh, const DrivePlan& plan, const DrivingStyle& style,
+                             const WheeledRobot& robot, std::uint64_t seed,
+                             const SimulatedEffects& effects) {
+  return simulate_drive(mesh, walk_of(plan, mesh), style_of_plan(plan, style), robot, seed,
+                        effects);
+}
+
 double SimulatedRecording::length() const {
   double sum = 0.0;
   for (const TrueRow& row : drive.motion.rows) {
@@ -100,18 +197,28 @@ SimulatedRecording simulate(const SimulationSettings& settings,
   }
   SimulatedRecording result;
   result.effects = effects;
-  result.mesh = make_mesh(settings);
+  const bool own_places = settings.plan && settings.places_of_plan;
+  result.mesh = own_places ? mesh_of(*settings.plan) : make_mesh(settings);
   std::mt19937_64 random = random_stream(settings.seed, Stream::walk);
   const Tours tours =
-      make_tours(result.mesh, parse_walk_kind(settings.walk), settings.tours, random);
+      own_places ? Tours{walk_of(*settings.plan, result.mesh), {}}
+                 : make_tours(result.mesh, parse_walk_kind(settings.walk), settings.tours, random);
   const WheeledRobot robot = make_robot(settings);
   if (settings.hide) {
     result.effects = draw_hidden_effects(result.mesh, tours.walk, make_style(settings, {}), robot,
                                          !settings.no_survey, settings.seed);
   }
-  result.drive = simulate_drive(
-      result.mesh, tours.walk, make_style(settings, result.effects), robot, settings.seed,
-      {result.effects, settings.true_rates ? Rates::true_motion : Rates::as_recorded});
+  const SimulatedEffects acting{result.effects,
+                                settings.true_rates ? Rates::true_motion : Rates::as_recorded};
+  const DrivingStyle style = make_style(settings, result.effects);
+  if (settings.plan) {
+    result.drive = simulate_plan(result.mesh, *settings.plan, style, robot,
+                                 settings.seed + kFurtherSession, acting);
+    // The place was surveyed once.
+    result.drive.recording.survey = survey(result.mesh, robot, settings.seed);
+  } else {
+    result.drive = simulate_drive(result.mesh, tours.walk, style, robot, settings.seed, acting);
+  }
   if (settings.no_survey) result.drive.recording.survey.clear();
   result.model = nominal_model(settings);
   return result;

@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <span>
 #include <stdexcept>
@@ -124,10 +125,11 @@ Vector2 way_to(const Vector2& target, const PlannedLeg& leg, const Pose& here) {
   return length * rotation(course).col(0);
 }
 
-/// What is to be turned before a leg of this shape leads there, rad.
-double turn_to(const Vector2& way, const LegShape& shape, const Pose& here) {
+/// What is to be turned before a leg of this shape leads there, rad: within half a turn of `about`.
+double turn_to(const Vector2& way, const LegShape& shape, const Pose& here, double about = 0.0) {
   const double turned = direction(way) - direction(shape.end);
-  return wrap_angle(turned + shape.headings.front() - here.heading);
+  const double turn = wrap_angle(turned + shape.headings.front() - here.heading);
+  return about == 0.0 ? turn : unwrap_near(turn, about);
 }
 
 /// How many segments the next turn has, by an earlier path.
@@ -178,12 +180,13 @@ Vector2 jumped(double angle, const MotionSoFar& so_far, const PathBias& bias) {
   return sum;
 }
 
-/// Where the leg has to lead after a spin, m.
-Vector2 way_after_spin(const PlannedLeg& leg, const MotionSoFar& so_far, const PathBias& bias) {
+/// Where the leg has to lead after a spin by about so much [rad], m.
+Vector2 way_after_spin(const PlannedLeg& leg, double about, const MotionSoFar& so_far,
+                       const PathBias& bias) {
   const Pose& here = so_far.pose();
   Vector2 way = way_to(leg.target, leg, here);
   for (int pass = 0; pass < kPasses && !bias.jump.empty(); ++pass) {
-    const double turn = turn_to(way, leg.shape, here);
+    const double turn = turn_to(way, leg.shape, here, about);
     way = way_to(leg.target - jumped(turn, so_far, bias), leg, here);
   }
   return way;
@@ -239,7 +242,8 @@ class Path {
 
   void start_at(int landmark) {
     so_far_.start_at(stop_near(landmark) - sensor());
-    so_far_.surround(draws_.next(so_far_.surroundings()));
+    so_far_.surround(rules_.style.orders.empty() ? draws_.next(so_far_.surroundings())
+                                                 : rules_.style.orders.front().surroundings);
     if (rules_.style.first_rest > 0.0) so_far_.rest(rules_.style.first_rest);
     so_far_.stop(landmark);
   }
@@ -272,6 +276,34 @@ class Path {
     so_far_.surround(draws_.next(so_far_.surroundings()));
   }
 
+  /// Likewise, as ordered.
+  void go(int landmark, const LegOrder& order) {
+    const double temperature = so_far_.surroundings().temperature_C;
+    so_far_.surround({order.surroundings.payload_kg, order.surroundings.lights, temperature});
+    if (order.rest > 0.0) so_far_.rest(order.rest);
+    PlannedLeg leg{stop_near(landmark), sensor(), {1.0, 0.0}, {}, {}};
+    const double radius = rules_.manner.turning_radius;
+    if (radius > 0.0) circle_whole_turns(order);
+    const double straight = (leg.target - so_far_.pose().position()).norm();
+    leg.profile = profile_of_leg(straight, order.speed, so_far_.motion(), rules_);
+    leg.shape = leg_shape({0.0, -0.5 * order.bend, 0.0}, leg.profile,
+                          rules_.manner.bends_by_way ? Bends::by_way : Bends::in_time);
+    if (radius * sharpest_bend({0.0, 0.5 * order.bend, 0.0}) > straight) {
+      throw std::invalid_argument(
+          fmt::format("a leg of {:.3g} m is to bend by {:.3g} rad, sharper than the robot's "
+                      "tightest bend, of radius {:.3g} m",
+                      straight, order.bend, radius));
+    }
+    leg.shape.end = end_on_course(leg, so_far_.motion(), rules_);
+    const Vector2 way = radius > 0.0 ? turn_in_arcs_to(leg, order.turn_rate)
+                                     : spin_to(leg, order.turn_rate, order.turn);
+    drive_shape(leg, way);
+    so_far_.stop(landmark);
+    if (rules_.style.overrun > 0.0) {
+      so_far_.drive_on(rules_.style.overrun, order.speed, leg.course);
+    }
+  }
+
   [[nodiscard]] TrueMotion take() {
     if (rules_.style.last_rest > 0.0) so_far_.rest(rules_.style.last_rest);
     return so_far_.motion();
@@ -299,28 +331,39 @@ class Path {
     leg.profile = profile_of_leg(straight, wanted_speed, so_far_.motion(), rules_);
     leg.shape = draws_.shape(leg.profile, straight);
     leg.shape.end = end_on_course(leg, so_far_.motion(), rules_);
-    const Vector2 way = rules_.manner.turning_radius > 0.0 ? turn_in_arcs_to(leg) : spin_to(leg);
+    drive_shape(leg, rules_.manner.turning_radius > 0.0 ? turn_in_arcs_to(leg) : spin_to(leg));
+  }
+
+  /// Drives a leg to which the robot has turned.
+  void drive_shape(const PlannedLeg& leg, const Vector2& way) {
     const double offset = so_far_.pose().heading - leg.shape.headings.front();
     std::vector<double> headings = leg.shape.headings;
     for (double& heading : headings) heading = offset + heading;
     so_far_.drive(way.norm() / leg.shape.end.norm(), leg.course, leg.profile, headings);
   }
 
-  /// Returns where the leg has to lead then, m.
-  Vector2 spin_to(const PlannedLeg& leg) {
-    Vector2 way = way_after_spin(leg, so_far_, rules_.bias);
-    so_far_.spin(turn_to(way, leg.shape, so_far_.pose()), draws_.turn_rate());
+  /// The whole turns that are ordered.
+  void circle_whole_turns(const LegOrder& order) {
+    const double turns = std::round(order.turn / (2.0 * pi));
+    if (turns == 0.0) return;
+    so_far_.circle(turns * 2.0 * pi, rules_.manner.turning_radius, order.turn_rate);
+  }
+
+  /// Returns where the leg has to lead then, m. `rate` [rad/s]: none: drawn.
+  Vector2 spin_to(const PlannedLeg& leg, std::optional<double> rate = {}, double about = 0.0) {
+    Vector2 way = way_after_spin(leg, about, so_far_, rules_.bias);
+    so_far_.spin(turn_to(way, leg.shape, so_far_.pose(), about), rate ? *rate : draws_.turn_rate());
     return way;
   }
 
   /// The same in arcs. Their number is an earlier path's.
-  Vector2 turn_in_arcs_to(const PlannedLeg& leg) {
+  Vector2 turn_in_arcs_to(const PlannedLeg& leg, std::optional<double> rate = {}) {
     const std::vector<double>& turns = rules_.bias.turns;
     const std::size_t at = so_far_.motion().turns.size();
     const Vector2 way = way_to(leg.target, leg, so_far_.pose());
     const double about = at < turns.size() ? turns[at] : turn_to(way, leg.shape, so_far_.pose());
     std::vector<double> rates(idx(arcs_of_turn(about, rules_.manner)));
-    for (double& rate : rates) rate = draws_.turn_rate();
+    for (double& one : rates) one = rate ? *rate : draws_.turn_rate();
     const TurnInArcs arcs = turn_in_arcs(leg, about, rates, so_far_, rules_);
     so_far_.turn_in_arcs(about, arcs.turn, rules_.manner.turning_radius, arcs.rows);
     return arcs.way;
@@ -347,6 +390,7 @@ TrueMotion lay_path(const Mesh& mesh, const std::vector<int>& walk, const Drivin
                     std::uint64_t seed, const PathBias& bias, const DrivingManner& manner) {
   check_style(style);
   check_walk(mesh, walk, style.standing, manner.turning_radius);
+  check_orders(style, walk.size() - 1);
   const std::size_t legs = walk.size() - 1;
   const auto spins_until = [&](std::size_t leg) {
     return leg * static_cast<std::size_t>(style.full_spins) / legs;
@@ -354,10 +398,15 @@ TrueMotion lay_path(const Mesh& mesh, const std::vector<int>& walk, const Drivin
   Path path(mesh, {style, bias, manner}, seed);
   path.start_at(walk.front());
   for (std::size_t k = 0; k < legs; ++k) {
-    path.go(walk[k + 1], spins_until(k + 1) > spins_until(k));
+    if (style.orders.empty()) {
+      path.go(walk[k + 1], spins_until(k + 1) > spins_until(k));
+    } else {
+      path.go(walk[k + 1], style.orders[k]);
+    }
   }
   TrueMotion motion = path.take();
-  motion.further = further_columns(motion, style.covariates, seed);
+  motion.further = style.orders.empty() ? further_columns(motion, style.covariates, seed)
+                                        : ordered_columns(motion, style);
   return motion;
 }
 

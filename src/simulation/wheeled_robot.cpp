@@ -391,6 +391,12 @@ void survey_headings(double sd, std::uint64_t seed, std::vector<SurveyPoint>& po
 
 }  // namespace
 
+std::vector<SurveyPoint> survey(const Mesh& mesh, const WheeledRobot& robot, std::uint64_t seed) {
+  std::vector<SurveyPoint> points = survey(mesh, robot.noise.survey, seed);
+  if (robot.markers) survey_headings(robot.noise.yaw, seed, points);
+  return points;
+}
+
 SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
                               const DrivingStyle& style, const WheeledRobot& robot,
                               std::uint64_t seed, const SimulatedEffects& effects) {
@@ -417,8 +423,7 @@ SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
       lay_path_under(mesh, walk, patient, robot.geometry, acting, effects.rates, seed);
   SimulatedDrive drive;
   drive.recording = record(laid.motion, mesh, robot, seed, laid.gains);
-  drive.recording.survey = survey(mesh, robot.noise.survey, seed);
-  if (robot.markers) survey_headings(robot.noise.yaw, seed, drive.recording.survey);
+  drive.recording.survey = survey(mesh, robot, seed);
   drive.motion = std::move(laid.motion);
   return drive;
 }

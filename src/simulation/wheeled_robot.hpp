@@ -22,4 +22,8 @@ namespace trussmap {
 /// Every landmark's position as surveyed with this standard deviation [m per coordinate].
 [[nodiscard]] std::vector<SurveyPoint> survey(const Mesh& mesh, double sd, std::uint64_t seed);
 
+/// The same by the robot's noise, of markers with headings.
+[[nodiscard]] std::vector<SurveyPoint> survey(const Mesh& mesh, const WheeledRobot& robot,
+                                              std::uint64_t seed);
+
 }  // namespace trussmap

@@ -8,6 +8,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/non_central_chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/gamma.hpp>
@@ -39,6 +40,11 @@ double log_chi2_p_value(double chi2, int dof) {
 
 double chi2_cdf(double chi2, double dof) {
   return boost::math::cdf(boost::math::chi_squared(dof), chi2);
+}
+
+double noncentral_chi2_tail(double chi2, double dof, double noncentrality) {
+  if (!(noncentrality > 0.0)) return chi2_p_value_real(chi2, dof);
+  return upper_tail(boost::math::non_central_chi_squared(dof, noncentrality), chi2);
 }
 
 double chi2_quantile(double p, double dof) {

@@ -13,6 +13,8 @@ namespace trussmap {
 /// Natural logarithm of chi2_p_value, also where that is too small for a number.
 [[nodiscard]] double log_chi2_p_value(double chi2, int dof);
 [[nodiscard]] double chi2_cdf(double chi2, double dof);
+/// The upper tail of chi^2 with a noncentrality.
+[[nodiscard]] double noncentral_chi2_tail(double chi2, double dof, double noncentrality);
 /// The chi^2 that is exceeded with probability 1 - p.
 [[nodiscard]] double chi2_quantile(double p, double dof);
 

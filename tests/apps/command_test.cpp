@@ -27,8 +27,9 @@ using testing::run_trussmap;
 using testing::ScratchFolder;
 
 const std::vector<std::string> kCommands = {
-    "add", "adjust", "build", "calibrate", "compare",  "convert", "diagnose", "discover", "effects",
-    "fit", "merge",  "noise", "reveal",    "simulate", "tape",    "tour",     "umbmark",  "watch"};
+    "add",      "adjust",  "build", "calibrate", "compare", "convert", "diagnose",
+    "discover", "effects", "fit",   "merge",     "noise",   "plan",    "reveal",
+    "simulate", "tape",    "tour",  "umbmark",   "watch"};
 
 TEST(Command, HelpIsThereForEveryCommand) {
   const std::string all = run_trussmap("--help").output;
@@ -324,7 +325,7 @@ TEST(Command, AWordThatIsNoCommandIsNamed) {
             "calibrate, check, "
             "compare, completion, convert, diagnose, discover, effects, explore, fit, fleet, "
             "manual, merge, "
-            "noise, "
+            "noise, plan, "
             "reveal, schema, serve, simulate, tape, tour, umbmark, watch\n");
 }
 

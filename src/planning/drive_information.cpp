@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "planning/drive_information.hpp"
+
+#include "estimation/recording_system.hpp"
+#include "fit/column_builder.hpp"
+#include "fit/noise_free.hpp"
+#include "linalg/dense.hpp"
+#include "trussmap/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace trussmap {
+namespace {
+
+constexpr double kLeastMode = 1e-10;  // of the scaled information: below it nothing is known
+
+/// The border with all its coefficients held where the fit has them.
+EffectParameters held_at(EffectParameters border, const Eigen::VectorXd& offsets) {
+  for (std::size_t k = 0; k < border.size(); ++k) {
+    border[k].held = border[k].reference + offsets[static_cast<Eigen::Index>(k)];
+  }
+  return border;
+}
+
+struct Columns {
+  Eigen::MatrixXd map;  ///< by landmarks, then orientations
+  Eigen::Index orientations = 0;
+};
+
+/// Rows by the map's unknowns. A survey's stand at its own node.
+Columns map_columns(const RecordingProblem& problem, const RecordingSystem& system, bool survey) {
+  const Eigen::Index places = Eigen::Index{2} * problem.landmark_count();
+  Columns result;
+  result.orientations = static_cast<Eigen::Index>(problem.oriented.size());
+  result.map = Eigen::MatrixXd::Zero(system.rows(), places + result.orientations);
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    const Measurement& one = problem.measurements[k];
+    const bool surveyed = one.session < 0;
+    const int node = surveyed ? one.from : one.to;
+    if (node < 0 || (surveyed && !survey)) continue;
+    const Eigen::Index row = system.first_row(k);
+    if (problem.is_landmark(node)) {
+      const Eigen::Index at = Eigen::Index{2} * node;
+      if (surveyed) {
+        result.map.block(row, at, one.rows, 2) =
+            system.root_weight(k) * one.whitener.topLeftCorner(one.rows, 2);
+      } else {
+        result.map.block(row, at, one.rows, 2) = system.rows_by_to(k).leftCols(2);
+      }
+    } else if (problem.is_orientation(node)) {
+      const Eigen::Index at = places + node - problem.pose_end();
+      if (surveyed) {
+        result.map(row, at) = system.root_weight(k) * one.whitener(0, 0);
+      } else {
+        result.map.block(row, at, one.rows, 1) = system.rows_by_to(k).leftCols(1);
+      }
+    }
+  }
+  return result;
+}
+
+Eigen::MatrixXd effect_columns_of(ColumnBuilder& builder, const std::vector<Effect>& effects) {
+  Eigen::MatrixXd all(builder.rows(), 0);
+  if (effects.empty()) return all;
+  for (const Eigen::MatrixXd& one : builder.columns(effects)) append_columns(all, one);
+  return all;
+}
+
+}  // namespace
+
+Eigen::MatrixXd without(const Eigen::MatrixXd& A, const std::vector<Eigen::Index>& gone) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < A.cols(); ++k) {
+    if (std::find(gone.begin(), gone.end(), k) == gone.end()) kept.push_back(k);
+  }
+  Eigen::MatrixXd left = A(kept, kept);
+  if (gone.empty()) return left;
+  const Eigen::MatrixXd D = A(gone, gone);
+  const Eigen::ArrayXd sd = D.diagonal().array().max(0.0).sqrt();
+  const Eigen::VectorXd scale = (sd > 0.0).select(1.0 / sd, 0.0);
+  const SymmetricModes modes = symmetric_modes(scale.asDiagonal() * D * scale.asDiagonal());
+  const Eigen::MatrixXd across = scale.asDiagonal() * A(gone, kept);
+  Eigen::MatrixXd shown = modes.eigenvectors.transpose() * across;
+  for (Eigen::Index k = 0; k < shown.rows(); ++k) {
+    const double mode = modes.eigenvalues[k];
+    shown.row(k) *= mode > kLeastMode ? 1.0 / std::sqrt(mode) : 0.0;
+  }
+  left.noalias() -= shown.transpose() * shown;
+  return left;
+}
+
+DriveInformation information_of(const FitState& fit, const InformationOf& what) {
+  const Eigen::VectorXd offsets = offsets_of(fit);
+  const NoiseFree clean(fit.recordings, fit.model, fit.problem, fit.columns.border, offsets,
+                        fit.adjustment.state);
+  const EffectParameters held = held_at(clean.border, offsets);
+  const std::vector<double> weights =
+      weights_without(fit.adjustment.left_out, fit.problem.measurements.size());
+  RecordingSystem system(clean.problem, held, RecordingGauge{.hold_map = true});
+  system.set_weights(weights);
+  static_cast<void>(system.linearise(clean.state, {}));
+  try {
+    system.normal_equations().factorise();
+  } catch (const NotPositiveDefinite&) {
+    throw SolveError(clean.problem.sessions.front() +
+                     ": its path is not determined where the landmarks are known; sight more of "
+                     "them");
+  }
+  ColumnBuilder builder(clean.context, clean.problem, clean.border, offsets, clean.state, weights);
+  const Columns map = map_columns(clean.problem, system, what.survey);
+  Eigen::MatrixXd F = map.map;
+  append_columns(F, effect_columns_of(builder, what.own));
+  const Eigen::Index own_end = F.cols();
+  append_columns(F, effect_columns_of(builder, what.effects));
+  F = system.free_of_nodes(std::move(F));
+  DriveInformation result;
+  result.landmarks = clean.problem.landmarks;
+  std::vector<Eigen::Index> gone(static_cast<std::size_t>(own_end - result.first_column()));
+  std::iota(gone.begin(), gone.end(), result.first_column());
+  result.H = without(F.transpose() * F, gone);
+  return result;
+}
+
+namespace {
+
+/// Adds a drive's information to a sum that has all of its landmarks.
+void add_to(DriveInformation& sum, const DriveInformation& one) {
+  std::vector<Eigen::Index> at;
+  for (const std::string& name : one.landmarks) {
+    const auto place = std::find(sum.landmarks.begin(), sum.landmarks.end(), name);
+    const Eigen::Index first = 2 * static_cast<Eigen::Index>(place - sum.landmarks.begin());
+    at.push_back(first);
+    at.push_back(first + 1);
+  }
+  for (Eigen::Index k = one.first_column(); k < one.H.cols(); ++k) {
+    at.push_back(sum.first_column() + k - one.first_column());
+  }
+  sum.H(at, at) += one.H;
+}
+
+}  // namespace
+
+DriveInformation sum_of(const DriveInformation& one, const DriveInformation& other) {
+  DriveInformation sum{one.landmarks, {}};
+  for (const std::string& name : other.landmarks) {
+    const auto& names = one.landmarks;
+    if (std::find(names.begin(), names.end(), name) == names.end()) sum.landmarks.push_back(name);
+  }
+  const Eigen::Index columns = one.H.cols() - one.first_column();
+  sum.H = Eigen::MatrixXd::Zero(sum.first_column() + columns, sum.first_column() + columns);
+  add_to(sum, one);
+  add_to(sum, other);
+  return sum;
+}
+
+DriveInformation reduced_to(const DriveInformation& whole,
+                            const std::vector<std::string>& landmarks) {
+  DriveInformation result;
+  std::vector<Eigen::Index> gone;
+  for (std::size_t k = 0; k < whole.landmarks.size(); ++k) {
+    const std::string& name = whole.landmarks[k];
+    if (std::find(landmarks.begin(), landmarks.end(), name) != landmarks.end()) {
+      result.landmarks.push_back(name);
+      continue;
+    }
+    gone.push_back(2 * static_cast<Eigen::Index>(k));
+    gone.push_back(2 * static_cast<Eigen::Index>(k) + 1);
+  }
+  result.H = without(whole.H, gone);
+  return result;
+}
+
+Eigen::MatrixXd gram_of(const DriveInformation& whole) {
+  return reduced_to(whole, {}).H;
+}
+
+}  // namespace trussmap
