@@ -101,7 +101,7 @@ void run(const Options& options) {
   int anew = 0;
   for (int day = 0; day < options.days; ++day) {
     before += processor_seconds([&] { fit.add(days[static_cast<std::size_t>(day)]); });
-    anew += fit.taken_anew();
+    anew += fit.relinearised();
     if ((day + 1) % 10 == 0) {
       fmt::print("{:>4} days: {:.2f} s in all, {} sessions taken anew\n", day + 1, before, anew);
     }
@@ -111,7 +111,7 @@ void run(const Options& options) {
   for (std::size_t day = static_cast<std::size_t>(options.days); day < days.size(); ++day) {
     const double seconds = processor_seconds([&] { fit.add(days[day]); });
     fmt::print("day {}: {:.1f} ms, {} of {} sessions taken anew\n", day + 1, 1e3 * seconds,
-               fit.taken_anew(), fit.sessions() - 1);
+               fit.relinearised(), fit.sessions() - 1);
     most = std::max(most, seconds);
     sum += seconds;
   }

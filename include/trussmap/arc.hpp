@@ -50,9 +50,9 @@ struct ArcNoise {
   double heading = 0.0;  ///< variance of the turn, rad^2
   double shared = 0.0;   ///< their covariance, m rad
   // Of wheels that move the body to the side as well:
-  double aside = 0.0;          ///< variance of the way to the left, m^2
-  double along_aside = 0.0;    ///< its covariance with the path length, m^2
-  double heading_aside = 0.0;  ///< and with the turn, m rad
+  double lateral = 0.0;          ///< variance of the way to the left, m^2
+  double along_lateral = 0.0;    ///< its covariance with the path length, m^2
+  double heading_lateral = 0.0;  ///< and with the turn, m rad
 };
 
 /// ArcNoise of the two wheels.

@@ -83,7 +83,7 @@ struct Finding {
   std::vector<double> joint_sd;
   /// By what its standard errors are larger for a place or threshold that was sought, one per
   /// coefficient; empty where none was.
-  std::vector<double> widened;
+  std::vector<double> sd_inflation;
   int tried = 1;  ///< members of its family
   /// By itself it explains next to nothing: it and others that are missing hide each other.
   bool only_together = false;
@@ -233,8 +233,8 @@ struct ChangingCoefficient {
   /// A walk: standard deviation of what an hour of driving changes.
   double per_root_hour = 0.0;
   std::vector<CoursePart> course;  ///< of either form, in order of time
-  /// Slow variables that the course follows, closest first ("temperature_C", "t", "distance"):
-  /// with one of them nothing of the change is left to explain.
+  /// Columns that the course follows, and "t" of a single recording, closest first: with one of
+  /// them nothing of the change is left to explain.
   std::vector<std::string> goes_with;
 };
 

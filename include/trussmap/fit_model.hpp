@@ -152,7 +152,7 @@ class SummarisedFit {
   /// Sightings, fixes and loops that the gate left out, session by session.
   [[nodiscard]] const std::vector<std::string>& left_out() const;
   /// How often the last add took an older session anew.
-  [[nodiscard]] int taken_anew() const;
+  [[nodiscard]] int relinearised() const;
   /// How far the result is from the least squares solution, m, rad, units of coefficients, by every
   /// session's exact gradient: for checks, it costs a step of all sessions.
   [[nodiscard]] double exact_error();

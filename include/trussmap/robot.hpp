@@ -140,7 +140,7 @@ struct GyroShare {
   double variance = 0.0;  ///< rad^2, of the gyro's turn; infinite without a reading
   double along = 0.0;     ///< m of travel that a radian of excess adds
   double turn = 0.0;      ///< share of the excess that is taken as turn, from 0 to 1
-  double aside = 0.0;     ///< m to the left that a radian of excess adds
+  double lateral = 0.0;   ///< m to the left that a radian of excess adds
 };
 
 /// A wheel, or the steering, of a drive that is not simply a left and a right wheel.

@@ -364,7 +364,7 @@ std::vector<ChangingCoefficient> changing_coefficients(const FitState& fit, cons
     const Chances chances = chances_of(about, step, walk, phi);
     const bool steps = chances.of_step() > chances.of_walk();
     change.form = steps ? ChangingCoefficient::Form::step : ChangingCoefficient::Form::walk;
-    change.chi2_decrease = steps ? step.score : walk.likeliest.gain;
+    change.chi2_decrease = steps ? step.score : walk.likeliest.phi * walk.likeliest.gain;
     if (steps) {
       tell_step(*all, step, chances, phi, change);
     } else {
@@ -372,7 +372,8 @@ std::vector<ChangingCoefficient> changing_coefficients(const FitState& fit, cons
     }
     tell_course(*all, mixed_course(*all, walk, chances, phi), change);
     change.goes_with = followed(about, fit);
-    if (fit.recordings.size() > 1) change.session_name = fit.recordings[change.session].name;
+    if (steps && fit.recordings.size() > 1)
+      change.session_name = fit.recordings[change.session].name;
     result.push_back(std::move(change));
   }
   for (ChangingCoefficient& one : result) one.p_value = std::min(1.0, tried * one.p_value);

@@ -201,7 +201,7 @@ std::map<std::string, Eigen::VectorXd> variables_over(const CoefficientCourse& c
   for (std::size_t k = 0; k < course.parts.size(); ++k) {
     hours[static_cast<Eigen::Index>(k)] = course.parts[k].hours;
   }
-  result.emplace("t", hours);
+  if (fit.recordings.size() == 1) result.emplace("t", hours);  // else it begins anew in each
   for (const Covariate& one : fit.recordings.front().drive.covariates) {
     if (auto means = means_of(one.name, course, fit)) result.emplace(one.name, *std::move(means));
   }

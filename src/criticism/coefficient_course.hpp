@@ -50,7 +50,8 @@ struct CoefficientCourse {
 /// The same beside a value per part, too; as it is where that is constant, or cannot be seen.
 [[nodiscard]] CoefficientCourse beside(const Eigen::VectorXd& values, CoefficientCourse course);
 
-/// Means over the parts: of the hours driven ("t"), and of the covariates that all sessions have.
+/// Means over the parts: of the hours driven (of a single session, "t"), and of the covariates that
+/// all sessions have.
 [[nodiscard]] std::map<std::string, Eigen::VectorXd> variables_over(const CoefficientCourse& course,
                                                                     const FitState& fit);
 

@@ -69,7 +69,8 @@ Comparison compare(const std::vector<DrivenRecording>& recordings, const ModelFi
     result.objection = Objection::effect;
     return result;
   }
-  const std::vector<ChangingCoefficient> changing = changing_coefficients(state, tests);
+  const std::vector<ChangingCoefficient> changing =
+      changing_coefficients(state, tests, std::min(kChangeLevel, options.level));
   if (!changing.empty()) {
     result.objection = Objection::change;
     result.changing = changing.front().effect.name;

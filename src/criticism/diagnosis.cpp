@@ -244,10 +244,10 @@ class Diagnostician {
       beside_the_others.score.coefficients = finding.joint;
       finding.implausible = is_implausible(beside_the_others);
       finding.only_together = search_.only_together();
-      finding.widened = widening_of(k);
-      for (std::size_t c = 0; c < finding.widened.size(); ++c) {
-        finding.sd[c] *= finding.widened[c];
-        finding.joint_sd[c] *= finding.widened[c];
+      finding.sd_inflation = widening_of(k);
+      for (std::size_t c = 0; c < finding.sd_inflation.size(); ++c) {
+        finding.sd[c] *= finding.sd_inflation[c];
+        finding.joint_sd[c] *= finding.sd_inflation[c];
       }
     }
     return finding;
@@ -339,8 +339,9 @@ void take_over(std::vector<ChangingCoefficient> others,
 void tell_changes(const ModelFit& stated, const ModelFit& fit, const std::optional<ModelFit>& with,
                   Diagnosis& result) {
   constexpr double kAsMuch = 0.8;  // of what is missing
-  const auto of = [](const ModelFit& one) {
-    return changing_coefficients(*one.state, ScoreTest(*one.state));
+  const auto of = [&result](const ModelFit& one) {
+    return changing_coefficients(*one.state, ScoreTest(*one.state),
+                                 std::min(kChangeLevel, result.level));
   };
   result.changing = of(with ? *with : fit);
   double courses = 0.0;
@@ -363,6 +364,7 @@ void tell_changes(const ModelFit& stated, const ModelFit& fit, const std::option
     });
     take_over(std::move(plain), result.changing);
   }
+  std::ranges::stable_sort(result.changing, {}, &ChangingCoefficient::p_value);
   if (result.changing.empty() || result.verdict != Diagnosis::Verdict::nothing_missing) return;
   result.verdict = Diagnosis::Verdict::unexplained_misfit;
   result.objection = Objection::change;
@@ -404,7 +406,7 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
     if (defended.otherwise) judge_by(std::move(*defended.otherwise));
   }
   explain(run.result, run.searched, under->fit, with);
-  tell_changes(fit, under->fit, with, run.result);
+  if (missing.empty() || with) tell_changes(fit, under->fit, with, run.result);
   const Noise& asked_of = options.estimate_noise ? stated : fit.model.noise;
   FitAnswers answers;
   bool answered = under->noise.changed();  // the noise is not the model's any more

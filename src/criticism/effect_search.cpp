@@ -149,8 +149,8 @@ std::optional<TestedEvent> EffectSearch::claiming_event(const FitState& ground,
 
 /// Laws of noise and single events that have a better claim than any effect come before them.
 /// `still`: the effects, asked of what is left.
-void EffectSearch::let_others_claim(ScoreTest& left, const FitState& ground,
-                                    std::vector<Tested>& still) {
+void EffectSearch::weigh_noise_and_events(ScoreTest& left, const FitState& ground,
+                                          std::vector<Tested>& still) {
   const auto significant = [this](const Tested& one) {
     return one.score.dof > 0 && one.p_adjusted < options_.level;
   };
@@ -186,7 +186,7 @@ void EffectSearch::find_missing() {
   const FitState& ground = noisier ? *noisier : fit_;
   ScoreTest left = noisier ? ScoreTest(ground) : tests_;
   std::vector<Tested> still = tested_;
-  let_others_claim(left, ground, still);
+  weigh_noise_and_events(left, ground, still);
   for (std::size_t k = 0; k < still.size(); ++k) {
     tested_[k].p_value = still[k].p_value;
     tested_[k].p_adjusted = still[k].p_adjusted;

@@ -6,7 +6,7 @@
 //
 //   test_all         members of families quickly, the best of each and all others in full
 //   refine_families  shape parameters of the most promising
-//   let_others_claim a law of noise or a single event that explains more comes first
+//   weigh_noise_and_events a law of noise or a single event that explains more comes first
 //   select           best, or a formula that says it better (formula_search.hpp); conditioned on
 //                    it the next, and so on
 //   known causes     of the catalogue, that together explain what a free form does
@@ -83,7 +83,7 @@ class EffectSearch {
   void take_best_set(const FitState& ground, const ScoreTest& left);
   void take_masked();
   void take_all(const std::vector<std::size_t>& places);
-  void let_others_claim(ScoreTest& left, const FitState& ground, std::vector<Tested>& still);
+  void weigh_noise_and_events(ScoreTest& left, const FitState& ground, std::vector<Tested>& still);
   [[nodiscard]] std::optional<TestedEvent> claiming_event(const FitState& ground,
                                                           const ScoreTest& left,
                                                           const std::vector<Tested>& still,

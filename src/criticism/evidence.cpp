@@ -191,8 +191,8 @@ std::vector<Seen> seen_in(const std::vector<const Finding*>& missing, std::size_
     const bool fitted = with && place < with->effects.size();
     EffectEstimate estimate =
         fitted ? with->effects[place] : EffectEstimate{missing[k]->effect, missing[k]->sd, {}};
-    for (std::size_t c = 0; fitted && c < missing[k]->widened.size(); ++c) {
-      estimate.sd.at(c) *= missing[k]->widened[c];
+    for (std::size_t c = 0; fitted && c < missing[k]->sd_inflation.size(); ++c) {
+      estimate.sd.at(c) *= missing[k]->sd_inflation[c];
     }
     seen.push_back({std::move(estimate), missing[k]->look_alikes});
   }

@@ -14,15 +14,15 @@
 namespace trussmap {
 
 struct RowMotion {
-  BodyMotion body;          ///< as the wheels show it, or wheels and gyro together
-  double wheelbase = 0.0;   ///< m, of a left and a right wheel
-  double length = 0.0;      ///< m, of a robot that steers
-  bool front = false;       ///< its measured wheel is the steered one
-  double duration = 0.0;    ///< s
-  double gyro_turn = 0.0;   ///< rad
-  double gyro_along = 0.0;  ///< as GyroShare::along
-  double gyro_aside = 0.0;  ///< as GyroShare::aside
-  double gyro_share = 0.0;  ///< as GyroShare::turn
+  BodyMotion body;            ///< as the wheels show it, or wheels and gyro together
+  double wheelbase = 0.0;     ///< m, of a left and a right wheel
+  double length = 0.0;        ///< m, of a robot that steers
+  bool front = false;         ///< its measured wheel is the steered one
+  double duration = 0.0;      ///< s
+  double gyro_turn = 0.0;     ///< rad
+  double gyro_along = 0.0;    ///< as GyroShare::along
+  double gyro_lateral = 0.0;  ///< as GyroShare::lateral
+  double gyro_share = 0.0;    ///< as GyroShare::turn
   bool gyro_reads = false;
   const std::vector<WheelColumn>* wheels = nullptr;  ///< of the drive, where it has other wheels
   std::size_t row = 0;                               ///< of the drive
@@ -59,7 +59,7 @@ struct RowMotion {
   RowMotion row = row_motion(gyro.wheels, duration, robot);
   row.gyro_turn = row.body.turn + gyro.excess;
   row.gyro_along = gyro.along;
-  row.gyro_aside = gyro.aside;
+  row.gyro_lateral = gyro.lateral;
   row.gyro_share = gyro.turn;
   row.gyro_reads = std::isfinite(gyro.variance);
   return row;

@@ -58,7 +58,7 @@ DrivePattern drive_pattern(Channel channel, double g, const RowMotion& row) {
   const double gyro = physics.gyro_pattern == nullptr ? 0.0 : physics.gyro_pattern(g, row);
   pattern.excess = gyro - pattern.turn;
   pattern.advance += row.gyro_along * pattern.excess;
-  pattern.slip += row.gyro_aside * pattern.excess;
+  pattern.slip += row.gyro_lateral * pattern.excess;
   pattern.turn += row.gyro_share * pattern.excess;
   return pattern;
 }

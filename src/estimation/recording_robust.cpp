@@ -136,7 +136,7 @@ class RobustDescent {
   RobustDescent(const RobustDescent&) = delete;
   RobustDescent& operator=(const RobustDescent&) = delete;
 
-  void heed() { heed_majority(problem_, fit_.state); }
+  void heed() { follow_majority(problem_, fit_.state); }
 
   /// From a wide gate down to the one wanted; then back to the narrowest that few sightings are
   /// beyond.
@@ -275,7 +275,7 @@ RecordingDescent descend_softly(RecordingSystem& system, const RecordingProblem&
   return fit;
 }
 
-void heed_majority(const RecordingProblem& problem, RecordingState& state) {
+void follow_majority(const RecordingProblem& problem, RecordingState& state) {
   std::vector<std::vector<Vector2>> places(state.landmarks.size());
   for (const Measurement& one : problem.measurements) {
     if (!locates(one)) continue;

@@ -39,7 +39,7 @@ namespace trussmap {
 /// A landmark whose first sighting was wrong lies where hardly any other sighting has it: it moves
 /// to where most of them do. Where as many have it elsewhere, it leaves a place that is another
 /// landmark's: a wrong name is read at a landmark.
-void heed_majority(const RecordingProblem& problem, RecordingState& state);
+void follow_majority(const RecordingProblem& problem, RecordingState& state);
 
 struct RobustDescentOptions {
   double gate = 0.0;           ///< c^2

@@ -29,7 +29,7 @@ RecordingDescent descend_roughly(RecordingSystem& system, const RecordingProblem
     return descend(system, robust.state, robust.coefficients, kRough);
   }
   if (std::isfinite(options.gate)) {
-    heed_majority(problem, fit.state);
+    follow_majority(problem, fit.state);
     constexpr DescentOptions kRound{5, 1e-4, kNegligibleDecrease};
     return descend_softly(system, problem, std::move(fit), options.gate, 4, kRound);
   }

@@ -246,7 +246,7 @@ void SummarisedSessions::take_in(SessionRows rows, const std::vector<KnownPlace>
   const bool direction = rows.tells_direction;
   if (first) begin(rows.border);
   know(known);
-  sum_.taken_anew = 0;
+  sum_.relinearised = 0;
   sessions_.push_back(joined(std::move(rows)));
   sessions_.back().summary.linearise(local(sessions_.back()), SecondDerivatives::gauss_newton);
   count_all();

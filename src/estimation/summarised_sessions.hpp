@@ -90,7 +90,7 @@ class SummarisedSessions {
   [[nodiscard]] std::vector<Matrix2> landmark_covariances() const;
   [[nodiscard]] Eigen::MatrixXd coefficient_covariance() const;
   /// How often a session was relinearised by the last add, the new one's own times apart.
-  [[nodiscard]] int taken_anew() const { return sum_.taken_anew; }
+  [[nodiscard]] int relinearised() const { return sum_.relinearised; }
   /// Largest difference that one exact step from here would make: what is really left. Takes every
   /// session's gradient: for checks.
   [[nodiscard]] double exact_error();
@@ -125,7 +125,7 @@ class SummarisedSessions {
     std::vector<Eigen::Index> held;  ///< places in x
     Eigen::MatrixXd information;     ///< H
     Eigen::VectorXd pull;            ///< G(x) = H (x - origin) - pull
-    int taken_anew = 0;
+    int relinearised = 0;
   };
 
   void require_tied(const SessionRows& rows, const std::vector<KnownPlace>& known) const;

@@ -35,7 +35,7 @@ double largest(const Eigen::VectorXd& values) {
 
 void SummarisedSessions::take_anew(Member& member, SecondDerivatives kind) {
   if (&member != &sessions_.back()) {
-    ++sum_.taken_anew;
+    ++sum_.relinearised;
     if (!member.before) {
       member.before = {member.summary.taken(), member.missed, member.trial};
     }

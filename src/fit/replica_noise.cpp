@@ -33,9 +33,9 @@ double with_effects(double value, const Replica& replica,
 void disturb_columns(std::size_t row, const Model& model, MotionRows& drive, NormalDraws& draw) {
   const ArcNoise own = row_noise(drive, row, 1.0, drive.duration(row), model.robot, model.noise);
   Matrix3 Q;
-  Q << own.along, own.along_aside, own.shared,        //
-      own.along_aside, own.aside, own.heading_aside,  //
-      own.shared, own.heading_aside, own.heading;
+  Q << own.along, own.along_lateral, own.shared,            //
+      own.along_lateral, own.lateral, own.heading_lateral,  //
+      own.shared, own.heading_lateral, own.heading;
   const Eigen::SelfAdjointEigenSolver<Matrix3> axes(Q);
   Eigen::Vector3d more = Eigen::Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
@@ -127,7 +127,7 @@ void part_wheels_and_gyro(std::size_t session, Replica& replica, NormalDraws& dr
     const GyroShare& gyro = drive.gyro[row];
     if (!std::isfinite(gyro.variance)) continue;
     const double excess = with_effects(0.0, replica, patterns, row, &DrivePattern::excess);
-    add_motion(drive, row, excess * BodyMotion{gyro.along, gyro.aside, gyro.turn}, robot);
+    add_motion(drive, row, excess * BodyMotion{gyro.along, gyro.lateral, gyro.turn}, robot);
     const double duration = drive.duration(row);
     const double turn = drive.turn[row] - excess;
     drive.yaw_rate[row] =

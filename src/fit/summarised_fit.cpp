@@ -294,8 +294,8 @@ const std::vector<std::string>& SummarisedFit::left_out() const {
   return impl_->left_out();
 }
 
-int SummarisedFit::taken_anew() const {
-  return impl_->sessions().taken_anew();
+int SummarisedFit::relinearised() const {
+  return impl_->sessions().relinearised();
 }
 
 double SummarisedFit::exact_error() {

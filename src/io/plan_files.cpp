@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -98,6 +99,7 @@ DrivePlan read_plan(const std::filesystem::path& file) {
     plan.loads.push_back(name);
     loads.push_back(table.require(name));
   }
+  std::map<std::string, Vector2> places;
   while (table.next()) {
     const double number = table.number(table.require("number"));
     const std::size_t expected = plan.waypoints.size() + 1;
@@ -105,12 +107,23 @@ DrivePlan read_plan(const std::filesystem::path& file) {
       table.fail(fmt::format("number is {:g}, expected {}", number, expected));
     }
     Waypoint one = read_waypoint(table, loads);
+    const auto [known, first] = places.emplace(one.landmark, one.place);
+    if (!first && known->second != one.place) {
+      table.fail(fmt::format("landmark {} is at ({:g}, {:g}), and above at ({:g}, {:g})",
+                             shown_field(one.landmark), one.place.x(), one.place.y(),
+                             known->second.x(), known->second.y()));
+    }
     require_drivable(table, one, plan.waypoints.empty() ? nullptr : &plan.waypoints.back());
     plan.waypoints.push_back(std::move(one));
   }
   if (plan.waypoints.size() < 2) {
     throw InputError(file.string(), 0,
                      fmt::format("{} waypoints, expected two or more", plan.waypoints.size()));
+  }
+  constexpr double kLongest = 1e6;  // s
+  if (const double lasts = plan_duration(plan); !(lasts <= kLongest)) {
+    throw InputError(file.string(), 0,
+                     fmt::format("the plan lasts {:g} s, expected {:g} at most", lasts, kLongest));
   }
   return plan;
 }

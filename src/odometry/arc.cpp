@@ -100,16 +100,17 @@ Pose slanting_displacement(const Vector2& way, double turn) {
 }
 
 Matrix3 slanting_covariance(const Vector2& way, double turn, const ArcNoise& noise) {
-  const bool aside = noise.aside != 0.0 || noise.along_aside != 0.0 || noise.heading_aside != 0.0;
-  if (way.y() == 0.0 && !aside) return arc_covariance(way.x(), turn, noise);
+  const bool lateral =
+      noise.lateral != 0.0 || noise.along_lateral != 0.0 || noise.heading_lateral != 0.0;
+  if (way.y() == 0.0 && !lateral) return arc_covariance(way.x(), turn, noise);
   // In axes turned so that the body moves ahead: D its way, and noise along and across it.
   const double D = way.norm();
   const double direction = D > 0.0 ? std::atan2(way.y(), way.x()) : 0.0;
   const Matrix2 R = rotation(direction);
   Matrix2 moved;
-  moved << noise.along, noise.along_aside, noise.along_aside, noise.aside;
+  moved << noise.along, noise.along_lateral, noise.along_lateral, noise.lateral;
   moved = (R.transpose() * moved * R).eval();
-  const Vector2 with_heading = R.transpose() * Vector2(noise.shared, noise.heading_aside);
+  const Vector2 with_heading = R.transpose() * Vector2(noise.shared, noise.heading_lateral);
   const Matrix3 ahead = arc_covariance(D, turn, {moved(0, 0), noise.heading, with_heading.x()});
   // A unit of noise across, where u of the arc remains: c = (sin ua, cos ua, 0). With e and b of
   // the covariance above, the integrals over u of c c', e c' + c e' and c b' + b c'.

@@ -63,7 +63,7 @@ GyroShare gyro_share(const BodyMotion& wheels, double yaw_rate, double duration,
   if (!(total > 0.0)) return share;
   share.along = of_wheels.shared / total;
   share.turn = of_wheels.heading / total;
-  share.aside = of_wheels.heading_aside / total;
+  share.lateral = of_wheels.heading_lateral / total;
   return share;
 }
 
@@ -74,7 +74,7 @@ GyroShare gyro_share(const MotionRows& drive, std::size_t row, double yaw_rate, 
 }
 
 BodyMotion together(const GyroShare& share) {
-  return share.wheels + share.excess * BodyMotion{share.along, share.aside, share.turn};
+  return share.wheels + share.excess * BodyMotion{share.along, share.lateral, share.turn};
 }
 
 ArcNoise noise_together(const GyroShare& share, const ArcNoise& wheels, double duration,
@@ -83,15 +83,15 @@ ArcNoise noise_together(const GyroShare& share, const ArcNoise& wheels, double d
   const double along = share.along;
   const double r = gyro_variance(noise, duration);
   const double kept = 1.0 - share.turn;
-  const double aside = share.aside;
+  const double lateral = share.lateral;
   const double both = wheels.heading + r;
   return {wheels.along - 2.0 * along * wheels.shared + along * along * both,
           kept * kept * wheels.heading + share.turn * share.turn * r,
           kept * (wheels.shared - along * wheels.heading) + share.turn * along * r,
-          wheels.aside - 2.0 * aside * wheels.heading_aside + aside * aside * both,
-          wheels.along_aside - along * wheels.heading_aside - aside * wheels.shared +
-              along * aside * both,
-          kept * (wheels.heading_aside - aside * wheels.heading) + share.turn * aside * r};
+          wheels.lateral - 2.0 * lateral * wheels.heading_lateral + lateral * lateral * both,
+          wheels.along_lateral - along * wheels.heading_lateral - lateral * wheels.shared +
+              along * lateral * both,
+          kept * (wheels.heading_lateral - lateral * wheels.heading) + share.turn * lateral * r};
 }
 
 MotionRows with_gyro(const MotionRows& drive, const Robot& robot, const Noise& noise) {

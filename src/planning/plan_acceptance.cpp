@@ -204,10 +204,15 @@ PlannedDrive plan_acceptance(const LandmarkGraph& map, const Model& model,
     if (beyond[k]) result.effects[asked.effects[k]].beyond = true;
     if (!beyond[k]) task.questions.push_back(asked.questions[k]);
   }
-  if (task.questions.empty()) return result;
+  const auto tell_without_drive = [&] {
+    task.questions = asked.questions;
+    tell_effects(asked, lambdas_of(task, gram_before(task)), beyond, result);
+    return result;
+  };
+  if (task.questions.empty()) return tell_without_drive();
   const FoundTour found = search_tour(task);
   result.enough = found.value.least >= 1.0;
-  if (found.tour.legs.empty()) return result;
+  if (found.tour.legs.empty()) return tell_without_drive();
   result.plan = plan_of(world, found.tour);
   result.length = found.value.length;
   result.duration = found.value.time;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace trussmap {
@@ -111,6 +112,9 @@ std::vector<PlannedPair> pairs_before(const RivalSubject& subject, const AskedPa
 
 PlannedDrive plan_drive(const Diagnosis& diagnosis, const PlanOptions& options) {
   check_plan_options(options);
+  if (!diagnosis.under) {
+    throw std::invalid_argument("a drive is planned for a diagnosis that estimated noise");
+  }
   const FitState& fit = *diagnosis.under->fit.state;
   const RivalSubject subject = rivals_of(diagnosis, options);
   const PlanWorld world =

@@ -124,9 +124,13 @@ void learn_rates(const FitState& fit, double max_speed, PlanWorld& world) {
   const double fast_turn = quantile_of(rates, 0.95, 0.8);
   world.turn_rates = {std::min(quantile_of(rates, 0.05, 0.3), 0.5 * fast_turn), fast_turn};
   const auto digits = [](double value) {
-    return std::max(0.01, std::round(100.0 * value) / 100.0);
+    return std::max(0.01, std::floor(100.0 * value + 1e-9) / 100.0);
   };
   for (double& one : world.speeds) one = digits(one);
+  if (max_speed > 0.0) {
+    for (double& one : world.speeds) one = std::min(one, max_speed);
+    world.speeds.back() = max_speed;
+  }
   for (double& one : world.turn_rates) one = digits(one);
 }
 
@@ -163,11 +167,31 @@ void learn_sensors(const FitState& fit, PlanWorld& world) {
   robot.reach = quantile_of(reach, 0.9, robot.reach);
 }
 
+/// "payload_kg", but no "cpu_loader".
 bool is_load(const std::string& name) {
-  for (const char* word : {"load", "mass", "weight", "kg", "cargo", "ballast"}) {
-    if (name.find(word) != std::string::npos) return true;
+  static const std::set<std::string> words{"load",  "payload", "mass", "weight",
+                                           "cargo", "ballast", "kg",   "payload_kg"};
+  std::string word;
+  for (const char letter : name + "_") {
+    if (letter != '_') {
+      word += letter;
+      continue;
+    }
+    if (words.contains(word)) return true;
+    word.clear();
   }
   return false;
+}
+
+/// All values that a column had.
+std::set<double> values_of(const std::string& name, const FitState& fit) {
+  std::set<double> values;
+  for (const DrivenRecording& recording : fit.recordings) {
+    for (const Covariate& one : recording.drive.covariates) {
+      if (one.name == name) values.insert(one.values.begin(), one.values.end());
+    }
+  }
+  return values;
 }
 
 /// From the drive's start on, changes alone.
@@ -188,9 +212,10 @@ void learn_columns(const FitState& fit, const std::vector<std::string>& variable
     const std::string& name = column.name;
     if (std::find(reserved.begin(), reserved.end(), name) != reserved.end()) continue;
     if (is_own_column(fit.model.robot, name) || column.values.empty()) continue;
-    const std::set<double> distinct(column.values.begin(), column.values.end());
+    const std::set<double> distinct = values_of(name, fit);
     const bool asked = std::find(variables.begin(), variables.end(), name) != variables.end();
-    if (asked && distinct.size() > 1 && (is_load(name) || distinct.size() == 2)) {
+    if (asked && distinct.size() > 1 && name != "temperature_C" &&
+        (is_load(name) || distinct.size() == 2)) {
       world.loads.push_back({name, {*distinct.begin(), *distinct.rbegin()}});
     } else {
       world.columns.push_back(as_recorded(column, fit.recordings.back().drive));

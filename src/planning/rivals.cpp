@@ -96,6 +96,12 @@ RivalSubject rivals_of(const Diagnosis& diagnosis, const PlanOptions& options) {
     }
   }
   std::erase_if(subject.rivals, speaks_of_sessions);
+  for (const Effect& one : subject.rivals) {
+    if (is_among(one, fit.model.effects)) {
+      throw std::invalid_argument("the model has " + one.name +
+                                  " already, expected rivals that it has not");
+    }
+  }
   for (const Effect& one : fit.model.effects) {
     (speaks_of_sessions(one) ? subject.own : subject.beside).push_back(one);
   }
@@ -103,7 +109,7 @@ RivalSubject rivals_of(const Diagnosis& diagnosis, const PlanOptions& options) {
   for (const Finding& one : diagnosis.findings) {
     if (one.joint.empty() || is_among(one.effect, subject.rivals)) continue;
     if (is_another_name(one, subject.rivals, tests)) continue;
-    subject.beside.push_back(one.effect);
+    (speaks_of_sessions(one.effect) ? subject.own : subject.beside).push_back(one.effect);
     tests.condition_on(tests.columns(one.effect));
   }
   double most = 0.0;
@@ -118,8 +124,14 @@ RivalSubject rivals_of(const Diagnosis& diagnosis, const PlanOptions& options) {
     subject.scores.push_back(scores[k].score);
     most = std::max(most, scores[k].score);
   }
+  constexpr double kKnown = 3.0;  // score: below, sizes near 0 are as likely
   const double left = tests.residuals().squaredNorm() - most;
   subject.phi = std::max(1.0, left / std::max(1, fit.adjustment.dof));
+  for (std::size_t k = 0; k < subject.scores.size(); ++k) {
+    if (subject.scores[k] >= kKnown * subject.phi) continue;
+    throw std::invalid_argument("the recordings hardly show " + subject.rivals[k].name +
+                                ", so that its size is not known; expected rivals that they show");
+  }
   return subject;
 }
 

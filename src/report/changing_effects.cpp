@@ -45,10 +45,9 @@ Chart course_chart(const ChangingCoefficient& change, std::size_t number) {
   Chart chart;
   chart.id = fmt::format("course-{}", number + 1);
   chart.title = capitalised(name_in_words(change.effect)) + " while driving";
-  chart.caption = "The coefficient of each while of driving, with its 95 % band, as " +
-                  std::string(change.form == ChangingCoefficient::Form::step ? "one step"
-                                                                             : "a walk at random") +
-                  " has it. Dashed: the same all the time, as the model has it.";
+  chart.caption =
+      "The coefficient of each while of driving, with its 95 % band: the mean over all moments and "
+      "sizes that the change may have. Dashed: the same all the time, as the model has it.";
   chart.x.title = "t [s]";
   chart.y.title =
       change.effect.coefficients.size() > 1 ? "times its size throughout" : "coefficient";

@@ -39,7 +39,7 @@ std::string plan_verdict(const PlannedDrive& drive, TextStyle style) {
   const bool rivals = !drive.pairs.empty();
   const std::size_t beyond = count_beyond(drive);
   const std::size_t all = drive.pairs.size() + drive.effects.size();
-  if (drive.plan.waypoints.empty() && drive.enough) {
+  if (drive.plan.waypoints.empty() && drive.enough && beyond == 0) {
     return verdict_text(Mood::good,
                         "no drive needed: the recordings tell these rivals apart by the wished "
                         "power",
@@ -47,8 +47,10 @@ std::string plan_verdict(const PlannedDrive& drive, TextStyle style) {
            "\n";
   }
   if (drive.plan.waypoints.empty()) {
-    const char* what = rivals ? "no drive on these routes tells these rivals apart"
-                              : "no drive on these routes shows any of these effects";
+    const char* what = drive.enough   ? "what drives on these routes can tell is told already"
+                       : beyond < all ? "none within the limits tells anything"
+                       : rivals       ? "no drive on these routes tells these rivals apart"
+                                      : "no drive on these routes shows any of these effects";
     return verdict_text(Mood::bad, fmt::format("no drive: {}", what), style) + "\n";
   }
   const std::string size = fmt::format("{:.1f} m in {}", drive.length, minutes(drive.duration));

@@ -255,6 +255,8 @@ inline constexpr auto kDescribed<ChangingCoefficient> = described(
     field("chi2_decrease", &ChangingCoefficient::chi2_decrease,
           "that allowing for it takes away (a walk: of -2 log likelihood)"),
     field("recording", of_step<&ChangingCoefficient::session>, "of a step: place, from 0 on"),
+    field("between", of_step<&ChangingCoefficient::between>,
+          "of a step: whether it is before the first drive of that recording"),
     field("t", of_step<&ChangingCoefficient::t>, "s, of a step"),
     field("earliest_t", of_step<&ChangingCoefficient::earliest>, "s, of a step, 95 %"),
     field("latest_t", of_step<&ChangingCoefficient::latest>, "s, likewise"),
@@ -384,7 +386,7 @@ inline constexpr auto kDescribed<Discovery> = described(
         .one_of("consistent | unexplained misfit"),
     field("effects", through(&Discovery::found, &ModelFit::effects), "of the model found"),
     field("changing", through(&Discovery::last, &Diagnosis::changing),
-          "those of them whose coefficients change, surest first"),
+          "effects of the last model, and missing ones, whose coefficients change, surest first"),
     field(
         "noise_estimated", [](const Discovery& one) { return noise_of(one.last); },
         "by which all is judged; null with --stated-noise"),

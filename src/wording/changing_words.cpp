@@ -39,10 +39,12 @@ std::string walk_text(const ChangingCoefficient& change) {
   const bool rises = least < most;
   const CoursePart& first = rises ? *least : *most;
   const CoursePart& then = rises ? *most : *least;
-  const auto when = [](const CoursePart& part) {
-    return fixed_text(0.5 * (part.from + part.until), 0);
+  const bool several = change.course.back().session > 0;
+  const auto when = [several](const CoursePart& part) {
+    return fixed_text(0.5 * (part.from + part.until), 0) + " s" +
+           (several ? fmt::format(" of recording {}", part.session + 1) : "");
   };
-  return fmt::format("{} wanders while driving: at t = {} s, {}; at t = {} s, {}",
+  return fmt::format("{} wanders while driving: at t = {}, {}; at t = {}, {}",
                      name_in_words(change.effect), when(first),
                      size_text(change, first.value, first.sd), when(then),
                      size_text(change, then.value, then.sd));

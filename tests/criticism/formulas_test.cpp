@@ -90,8 +90,8 @@ TEST(Formulas, ADecayHasItsTime) {
   const double there = first.effect.shape.front().values({{"t", {200.0}}}).front();
   EXPECT_NEAR(-200.0 / std::log(there), 200.0, 60.0);
   // The time was sought, and the size is less certain for it.
-  ASSERT_EQ(first.widened.size(), 1U);
-  EXPECT_GT(first.widened.front(), 1.01);
+  ASSERT_EQ(first.sd_inflation.size(), 1U);
+  EXPECT_GT(first.sd_inflation.front(), 1.01);
 }
 
 TEST(Formulas, AnEdgeBetweenTwoFloorsIsFoundAtItsAngle) {

@@ -89,7 +89,7 @@ TEST(LargeEffects, AtAPlaceLeaveNeitherWrongSightingsNorNoiseThatLasts) {
   EXPECT_EQ(found[1]->effect.name, "turn asymmetry");
   EXPECT_NEAR(found[0]->joint.at(0), -0.14, 4.0 * found[0]->joint_sd.at(0));
   EXPECT_NEAR(found[1]->joint.at(0), -0.0134, 4.0 * found[1]->joint_sd.at(0));
-  EXPECT_GT(found[0]->widened.at(0), 1.2);  // its place was sought
+  EXPECT_GT(found[0]->sd_inflation.at(0), 1.2);  // its place was sought
   // Sightings in the ring contradict the model given, and nothing with what is missing.
   ASSERT_TRUE(result.under);
   ASSERT_FALSE(result.under->fit.left_out.empty());

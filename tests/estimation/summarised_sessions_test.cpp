@@ -322,7 +322,7 @@ TEST(SummarisedSessions, KeepToACoarserToleranceWithLessWork) {
   EXPECT_LT(fine.exact_error(), 1e-8);
   EXPECT_LT(coarse.exact_error(), 1e-5);
   EXPECT_GT(coarse.exact_error(), 1e-8);
-  EXPECT_LT(coarse.taken_anew(), fine.taken_anew());
+  EXPECT_LT(coarse.relinearised(), fine.relinearised());
 }
 
 /// To the last bit, and what comes after it is as if it had never been tried.
@@ -338,7 +338,7 @@ TEST(SummarisedSessions, ASessionThatFailsChangesNothing) {
     EXPECT_EQ(map.landmark_covariances(), untouched.landmark_covariances());
     EXPECT_EQ(map.chi2(), untouched.chi2());
     EXPECT_EQ(map.dof(), untouched.dof());
-    EXPECT_EQ(map.taken_anew(), untouched.taken_anew());
+    EXPECT_EQ(map.relinearised(), untouched.relinearised());
     for (int k = 0; k < static_cast<int>(untouched.landmarks().size()); ++k) {
       EXPECT_EQ(map.position(k), untouched.position(k));
     }

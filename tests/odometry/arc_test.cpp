@@ -105,9 +105,9 @@ TEST_P(SlantingArc, ClosedFormEqualsDenseIntegration) {
   EXPECT_NEAR((found.position() - end).norm(), 0.0, 1e-12 * (1.0 + way.norm()));
   EXPECT_EQ(found.heading, turn);
   Matrix3 source;
-  source << noise.along, noise.along_aside, noise.shared,   //
-      noise.along_aside, noise.aside, noise.heading_aside,  //
-      noise.shared, noise.heading_aside, noise.heading;
+  source << noise.along, noise.along_lateral, noise.shared,       //
+      noise.along_lateral, noise.lateral, noise.heading_lateral,  //
+      noise.shared, noise.heading_lateral, noise.heading;
   // What moves the robot in its own axes where a share of the arc is behind it.
   const Matrix3 expected = integral(Matrix3(Matrix3::Zero()), [&](double share) {
     Matrix3 J = pose_rotation(share * turn);
