@@ -147,12 +147,12 @@ Walk likeliest_walk(const CoefficientCourse& about) {
 
 /// Deviations from the fitted coefficient as the walk has them, and their covariance. `all`: with
 /// the constant.
-struct Estimate {
+struct Deviations {
   Eigen::VectorXd value;
   Eigen::MatrixXd covariance;
 };
 
-Estimate estimate(const CoefficientCourse& all, const WalkSize& walk) {
+Deviations deviations(const CoefficientCourse& all, const WalkSize& walk) {
   const Eigen::Index n = all.s.size();
   Eigen::MatrixXd P = all.G / walk.phi;
   for (Eigen::Index k = 1; k < n; ++k) {
@@ -168,7 +168,7 @@ Estimate estimate(const CoefficientCourse& all, const WalkSize& walk) {
 }
 
 /// Two values instead of one, from part `at` on the second; their covariance.
-Estimate estimate(const CoefficientCourse& all, std::size_t at, double phi) {
+Deviations deviations(const CoefficientCourse& all, std::size_t at, double phi) {
   const Eigen::Index n = all.s.size();
   Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(n, 2);
   for (Eigen::Index k = 0; k < n; ++k) sides(k, idx(k) < at ? 0 : 1) = 1.0;
@@ -246,7 +246,7 @@ Mixture mixed_course(const CoefficientCourse& all, const Walk& walk, const Chanc
   Mixture mixture(n);
   for (std::size_t at = 1; at < chances.steps.size(); ++at) {
     if (chances.steps[at] < least) continue;
-    const Estimate sides = estimate(all, at, phi);
+    const Deviations sides = deviations(all, at, phi);
     Eigen::ArrayXd value(n);
     Eigen::ArrayXd variance(n);
     for (Eigen::Index k = 0; k < n; ++k) {
@@ -258,7 +258,7 @@ Mixture mixed_course(const CoefficientCourse& all, const Walk& walk, const Chanc
   }
   for (std::size_t k = 0; k < walk.sizes.size(); ++k) {
     if (chances.walks[k] < least) continue;
-    const Estimate walked = estimate(all, walk.sizes[k]);
+    const Deviations walked = deviations(all, walk.sizes[k]);
     mixture.add(chances.walks[k], walked.value.array(), walked.covariance.diagonal().array());
   }
   return mixture;
@@ -322,7 +322,7 @@ bool may_change(const FitState& fit, std::size_t effect) {
 
 void tell_step(const CoefficientCourse& all, const Step& step, const Chances& chances, double phi,
                ChangingCoefficient& change) {
-  const Estimate sides = estimate(all, step.at, phi);
+  const Deviations sides = deviations(all, step.at, phi);
   change.before = change.fitted + sides.value[0];
   change.before_sd = std::sqrt(sides.covariance(0, 0));
   change.after = change.fitted + sides.value[1];

@@ -107,13 +107,13 @@ DrivePlan read_plan(const std::filesystem::path& file) {
       table.fail(fmt::format("number is {:g}, expected {}", number, expected));
     }
     Waypoint one = read_waypoint(table, loads);
+    require_drivable(table, one, plan.waypoints.empty() ? nullptr : &plan.waypoints.back());
     const auto [known, first] = places.emplace(one.landmark, one.place);
     if (!first && known->second != one.place) {
       table.fail(fmt::format("landmark {} is at ({:g}, {:g}), and above at ({:g}, {:g})",
                              shown_field(one.landmark), one.place.x(), one.place.y(),
                              known->second.x(), known->second.y()));
     }
-    require_drivable(table, one, plan.waypoints.empty() ? nullptr : &plan.waypoints.back());
     plan.waypoints.push_back(std::move(one));
   }
   if (plan.waypoints.size() < 2) {

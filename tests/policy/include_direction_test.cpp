@@ -111,19 +111,14 @@ constexpr const char* kUmbrella = "trussmap";
 
 /// Files outside of src/ that include private headers: benches that look into a fit. A file that
 /// has come clean must be struck off.
-const std::set<std::string> kNotYetClean = {"bench/bench_worlds.cpp",
-                                            "bench/bench_worlds.hpp",
-                                            "bench/criticism_bench.cpp",
-                                            "bench/explanations_bench.cpp",
-                                            "bench/criticism_parts.cpp",
-                                            "bench/monitor_bench.cpp",
-                                            "bench/noise_bench.cpp",
-                                            "bench/scale/ceres_rivals.cpp",
-                                            "bench/scale/covariances_part.cpp",
-                                            "bench/scale/grid_part.cpp",
-                                            "bench/scale/online_part.cpp",
-                                            "bench/threads_bench.cpp",
-                                            "bench/truss_bench.cpp"};
+const std::set<std::string> kNotYetClean = {
+    "bench/bench_worlds.cpp",       "bench/bench_worlds.hpp",
+    "bench/criticism_bench.cpp",    "bench/changing_bench.cpp",
+    "bench/explanations_bench.cpp", "bench/criticism_parts.cpp",
+    "bench/monitor_bench.cpp",      "bench/noise_bench.cpp",
+    "bench/scale/ceres_rivals.cpp", "bench/scale/covariances_part.cpp",
+    "bench/scale/grid_part.cpp",    "bench/scale/online_part.cpp",
+    "bench/threads_bench.cpp",      "bench/truss_bench.cpp"};
 
 struct Include {
   int line = 0;
