@@ -309,6 +309,7 @@ std::vector<std::string> followed(const CoefficientCourse& about, const FitState
   }
   std::sort(explaining.begin(), explaining.end());
   std::vector<std::string> names;
+  names.reserve(explaining.size());
   for (auto& [chi2, name] : explaining) names.push_back(std::move(name));
   return names;
 }
