@@ -92,8 +92,9 @@ void run_calibrate(const CalibrateOptions& options) {
   }
   if (!options.json.empty()) {
     const results::CalibrationReport report{&found, &held, &test};
-    files.emplace_back(options.json,
-                       results::json_text(results::WithConstants{report, &constants}));
+    files.emplace_back(
+        options.json,
+        results::json_text(results::WithConstants<results::CalibrationReport>{report, &constants}));
   }
   if (options.page.wanted()) {
     const Page page =

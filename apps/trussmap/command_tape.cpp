@@ -80,6 +80,7 @@ std::vector<TapedRun> rehearsed_runs(const TapeCommandOptions& options, double w
   std::mt19937_64 of_gyro = random_stream(options.tape.seed, Stream::gyro);
   std::normal_distribution<double> normal;
   std::vector<TapedRun> runs;
+  runs.reserve(3 * static_cast<std::size_t>(options.tape.runs));
   for (int k = 0; k < options.tape.runs; ++k) runs.push_back(rehearsed_straight(robot, random));
   for (int k = 0; k < 2 * options.tape.runs; ++k) {
     runs.push_back(rehearsed_turn(robot, options, k % 2 == 0, k % 4 > 1, random));

@@ -195,8 +195,9 @@ void run_umbmark(const UmbmarkOptions& options) {
   }
   if (!options.tape.json.empty()) {
     const results::SquareReport report{&rounds, method_of(options), &alone};
-    files.emplace_back(options.tape.json,
-                       results::json_text(results::WithConstants{report, &constants}));
+    files.emplace_back(
+        options.tape.json,
+        results::json_text(results::WithConstants<results::SquareReport>{report, &constants}));
   }
   if (!options.tape.page.plots.empty()) {
     std::vector<SquareRuns> runs;

@@ -21,6 +21,8 @@
 namespace trussmap {
 
 /// Lengths in m, angles in rad, times in s. Noise is given as standard deviations.
+// In the order in which one thinks of them:
+// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
 struct SimulationSettings {
   std::string mesh = "6x6";
   double spacing = 5.0;        ///< m, between neighbours

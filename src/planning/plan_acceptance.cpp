@@ -117,6 +117,7 @@ std::vector<PlannedEffect> practical_effects(const FitState& fit, double times) 
     effects.push_back(std::move(effect));
   }
   std::vector<Effect> asked;
+  asked.reserve(effects.size());
   for (const PlannedEffect& one : effects) asked.push_back(one.effect);
   const std::vector<Score> scores = tests.test(asked);
   for (std::size_t k = 0; k < effects.size(); ++k) {
@@ -180,7 +181,7 @@ PlannedDrive plan_acceptance(const LandmarkGraph& map, const Model& model,
   const PlanWorld world = world_on(map, model, options);
   const DrivePlan thorough = plan_of(world, thorough_tour(world));
   PlannedDrive result;
-  result.options = options;
+  result.options = static_cast<const PlanOptions&>(options);
   result.effects = practical_effects(planned_fit(world, thorough), options.size);
   std::vector<Effect> effects;
   for (const PlannedEffect& one : result.effects) effects.push_back(one.effect);
