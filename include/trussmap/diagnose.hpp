@@ -209,7 +209,7 @@ struct CoursePart {
 };
 
 /// A coefficient that is not the same all the time, though the model has it so: tested against a
-/// step at an unknown moment and against a walk at random (criticism/coefficient_course.hpp).
+/// step at an unknown moment and against a walk at random (criticism/changing_coefficients.hpp).
 struct ChangingCoefficient {
   enum class Form { step, walk };
   Form form = Form::step;  ///< that explains more
@@ -217,8 +217,8 @@ struct ChangingCoefficient {
   /// What values are of: the coefficient of an effect that has one, else a factor of all.
   double fitted = 1.0;
   double p_value = 1.0;        ///< times the forms and effects tried
-  double chi2_decrease = 0.0;  ///< that allowing for it takes away; of a walk its gain in -2 log
-                               ///< likelihood
+  double chi2_decrease = 0.0;  ///< that allowing for it takes away; of a walk the gain in -2 log
+                               ///< likelihood, times the dispersion that it leaves
   // A step:
   std::size_t session = 0;   ///< where it is: place among the recordings
   std::string session_name;  ///< named only where there are several

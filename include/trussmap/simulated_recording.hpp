@@ -21,8 +21,6 @@
 namespace trussmap {
 
 /// Lengths in m, angles in rad, times in s. Noise is given as standard deviations.
-// In the order in which one thinks of them:
-// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
 struct SimulationSettings {
   std::string mesh = "6x6";
   double spacing = 5.0;        ///< m, between neighbours
@@ -66,13 +64,13 @@ struct SimulationSettings {
   bool true_rates = false;  ///< effects follow the true rates, else the recorded ones
   bool hide = false;        ///< effects are drawn from the catalogue
   bool loops = false;
-  double scan_every = 0.0;  ///< s: loops from scan to scan; 0: none
-  Mountings mounted = {};   ///< where the sensors sit, as stated and in truth
-  bool markers = false;     ///< landmarks have an axis
+  bool markers = false;         ///< landmarks have an axis
+  bool places_of_plan = false;  ///< the plan's own places are the landmarks, in place of the mesh
+  double scan_every = 0.0;      ///< s: loops from scan to scan; 0: none
+  Mountings mounted = {};       ///< where the sensors sit, as stated and in truth
   /// Driven in place of the tours, in the world of this seed and with its effects, by noise of its
   /// own: a further session. Without landmarks: of the mesh of these settings.
   std::optional<DrivePlan> plan = {};
-  bool places_of_plan = false;  ///< the plan's own places are the landmarks, in place of the mesh
 };
 
 /// A recording and what was simulated in it.

@@ -4,6 +4,7 @@
 
 #include "criticism/coefficient_course.hpp"
 #include "geometry/index.hpp"
+#include "linalg/dense.hpp"
 #include "statistics/quadratic_forms.hpp"
 
 #include <algorithm>
@@ -13,8 +14,6 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace trussmap {
@@ -92,13 +91,13 @@ struct Modes {
 
 Modes modes_of(const CoefficientCourse& about) {
   const Eigen::Index n = about.s.size();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> seen(about.G);
-  const double least = 1e-9 * std::max(seen.eigenvalues().maxCoeff(), 0.0);
+  const SymmetricModes seen = symmetric_modes(about.G);
+  const double least = 1e-9 * std::max(seen.eigenvalues.maxCoeff(), 0.0);
   Eigen::Index first = 0;
-  while (first < n && seen.eigenvalues()[first] <= least) ++first;
+  while (first < n && seen.eigenvalues[first] <= least) ++first;
   const Eigen::Index count = n - first;
-  const Eigen::VectorXd root = seen.eigenvalues().tail(count).cwiseSqrt();
-  const Eigen::MatrixXd U = seen.eigenvectors().rightCols(count);
+  const Eigen::VectorXd root = seen.eigenvalues.tail(count).cwiseSqrt();
+  const Eigen::MatrixXd U = seen.eigenvectors.rightCols(count);
   Eigen::MatrixXd W(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
     for (Eigen::Index k = 0; k < n; ++k) {
@@ -107,11 +106,11 @@ Modes modes_of(const CoefficientCourse& about) {
     }
   }
   const Eigen::MatrixXd A = root.asDiagonal() * (U.transpose() * W * U) * root.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> walk(A);
+  const SymmetricModes walk = symmetric_modes(A);
   Modes modes;
-  modes.variances = walk.eigenvalues().cwiseMax(0.0);
+  modes.variances = walk.eigenvalues.cwiseMax(0.0);
   modes.squares =
-      (walk.eigenvectors().transpose() * root.cwiseInverse().asDiagonal() * U.transpose() * about.s)
+      (walk.eigenvectors.transpose() * root.cwiseInverse().asDiagonal() * U.transpose() * about.s)
           .cwiseAbs2();
   return modes;
 }
@@ -163,8 +162,8 @@ Deviations deviations(const CoefficientCourse& all, const WalkSize& walk) {
     P(k, k - 1) -= stiff;
     P(k - 1, k) -= stiff;
   }
-  const Eigen::LDLT<Eigen::MatrixXd> solver(P);
-  return {-solver.solve(all.s) / walk.phi, solver.solve(Eigen::MatrixXd::Identity(n, n))};
+  const DenseLdlt factor(P);
+  return {-factor.solve(all.s) / walk.phi, factor.inverse()};
 }
 
 /// Two values instead of one, from part `at` on the second; their covariance.
@@ -210,7 +209,7 @@ struct Chances {
 };
 
 /// Whether a course is no step: what the step leaves changes, too.
-bool goes_on(const CoefficientCourse& about, const Step& step) {
+bool still_changes(const CoefficientCourse& about, const Step& step) {
   Eigen::VectorXd side = Eigen::VectorXd::Ones(about.s.size());
   side.head(static_cast<Eigen::Index>(step.at)).setZero();
   const CoefficientCourse without = beside(side, about);
@@ -219,7 +218,7 @@ bool goes_on(const CoefficientCourse& about, const Step& step) {
 
 Chances chances_of(const CoefficientCourse& about, const Step& step, const Walk& walk, double phi) {
   const double most = std::max(step.score / phi, walk.likeliest.gain);
-  const bool no_step = goes_on(about, step);
+  const bool no_step = still_changes(about, step);
   Chances chances;
   for (const double score : step.scores) {
     const double z2 = score / phi;

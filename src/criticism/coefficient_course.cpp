@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/coefficient_course.hpp"
 
+#include "drive/slow_covariates.hpp"
 #include "geometry/index.hpp"
+#include "linalg/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
-
-#include <Eigen/QR>
 
 namespace trussmap {
 namespace {
@@ -76,23 +76,12 @@ std::vector<std::size_t> cuts(const std::vector<Shown>& shown) {
 
 /// Columns of the fit's other effects, less what the map absorbs, orthonormal.
 Eigen::MatrixXd others_than(std::size_t effect, const FitState& fit, const ScoreTest& tests) {
-  std::vector<Eigen::MatrixXd> columns;
-  Eigen::Index count = 0;
+  constexpr double kSame = 1e-9;  // of the largest pivot
+  Eigen::MatrixXd all(tests.residuals().size(), 0);
   for (std::size_t e = 0; e < fit.model.effects.size(); ++e) {
-    if (e == effect) continue;
-    columns.push_back(tests.free_of_map(tests.columns(fit.model.effects[e])));
-    count += columns.back().cols();
+    if (e != effect) append_columns(all, tests.free_of_map(tests.columns(fit.model.effects[e])));
   }
-  Eigen::MatrixXd all(tests.residuals().size(), count);
-  Eigen::Index at = 0;
-  for (const Eigen::MatrixXd& one : columns) {
-    all.middleCols(at, one.cols()) = one;
-    at += one.cols();
-  }
-  if (count == 0) return all;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(all);
-  qr.setThreshold(1e-9);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(all.rows(), qr.rank());
+  return orthonormal_basis(all, kSame);
 }
 
 /// Of hours driven until an instant, all sessions before included.
@@ -122,9 +111,8 @@ std::optional<Eigen::VectorXd> means_of(const std::string& name, const Coefficie
   for (std::size_t k = 0; k < course.parts.size(); ++k) {
     const DrivePart& part = course.parts[k];
     const MotionRows& drive = fit.recordings[part.session].drive;
-    const auto found = std::find_if(drive.covariates.begin(), drive.covariates.end(),
-                                    [&](const Covariate& one) { return one.name == name; });
-    if (found == drive.covariates.end()) return std::nullopt;
+    const Covariate* found = find_covariate(drive, name);
+    if (found == nullptr) return std::nullopt;
     const auto first = std::lower_bound(drive.t.begin(), drive.t.end(), part.from);
     const auto last = std::max(std::lower_bound(first, drive.t.end(), part.until), first);
     const auto from = first - drive.t.begin();
@@ -165,7 +153,7 @@ std::optional<CoefficientCourse> course_of(std::size_t effect, const FitState& f
   }
   Eigen::MatrixXd free = tests.free_of_map(B);
   const Eigen::MatrixXd others = others_than(effect, fit, tests);
-  if (others.cols() > 0) free -= others * (others.transpose() * free);
+  free -= others * (others.transpose() * free);
   course.G = free.transpose() * free;
   course.s = free.transpose() * tests.residuals();
   course.chi2 = fit.adjustment.chi2;

@@ -25,19 +25,12 @@ struct Squares {
   }
 };
 
-const Covariate* find(const DrivenRecording& recording, const std::string& name) {
-  for (const Covariate& one : recording.drive.covariates) {
-    if (one.name == name) return &one;
-  }
-  return nullptr;
-}
-
 bool is_slow(const std::string& name, const std::vector<DrivenRecording>& recordings) {
   Squares total;
   double within = 0.0;
   for (const DrivenRecording& recording : recordings) {
-    const Covariate* covariate = find(recording, name);
     const MotionRows& drive = recording.drive;
+    const Covariate* covariate = find_covariate(drive, name);
     if (covariate == nullptr || drive.rows() < kRows * kBlocks) return false;
     std::vector<Squares> blocks(kBlocks);
     const double length = drive.t.back() - drive.t.front();
@@ -52,6 +45,13 @@ bool is_slow(const std::string& name, const std::vector<DrivenRecording>& record
 }
 
 }  // namespace
+
+const Covariate* find_covariate(const MotionRows& drive, const std::string& name) {
+  for (const Covariate& one : drive.covariates) {
+    if (one.name == name) return &one;
+  }
+  return nullptr;
+}
 
 std::vector<std::string> slow_covariates(const std::vector<DrivenRecording>& recordings) {
   std::vector<std::string> names;

@@ -12,6 +12,9 @@
 
 namespace trussmap {
 
+/// nullptr where the drive has none of this name.
+[[nodiscard]] const Covariate* find_covariate(const MotionRows& drive, const std::string& name);
+
 /// Names of the covariates that all recordings have and that vary between tenths of a recording
 /// rather than within them: at most a tenth of their variance is within.
 [[nodiscard]] std::vector<std::string> slow_covariates(

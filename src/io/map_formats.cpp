@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "io/csv.hpp"
+#include "io/geojson.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/recording.hpp"
 
@@ -10,10 +11,6 @@ namespace trussmap {
 namespace {
 
 using nlohmann::json;
-
-json coordinates(const Vector2& position) {
-  return {position.x(), position.y()};
-}
 
 void add_covariance(json& properties, const Matrix2& covariance) {
   properties["c_xx"] = covariance(0, 0);
@@ -40,10 +37,7 @@ std::string format_geojson(const LandmarkGraph& map) {
     if (landmark.covariance) add_covariance(properties, *landmark.covariance);
     if (landmark.heading) properties["heading"] = *landmark.heading;
     if (landmark.sd_heading) properties["sd_heading"] = *landmark.sd_heading;
-    features.push_back(
-        {{"type", "Feature"},
-         {"geometry", {{"type", "Point"}, {"coordinates", coordinates(landmark.position)}}},
-         {"properties", properties}});
+    features.push_back(geojson_point(landmark.position, std::move(properties)));
   }
   for (int number = 0; number < map.routes(); ++number) {
     const Route& route = map.route(number);
@@ -57,14 +51,9 @@ std::string format_geojson(const LandmarkGraph& map) {
                        {"dx", route.displacement.x()},
                        {"dy", route.displacement.y()}};
     add_covariance(properties, route.covariance);
-    features.push_back(
-        {{"type", "Feature"},
-         {"geometry",
-          {{"type", "LineString"},
-           {"coordinates", {coordinates(source.position), coordinates(target.position)}}}},
-         {"properties", properties}});
+    features.push_back(geojson_line(source.position, target.position, std::move(properties)));
   }
-  return json{{"type", "FeatureCollection"}, {"features", features}}.dump(1) + "\n";
+  return geojson_text(features);
 }
 
 std::string format_dot(const LandmarkGraph& map) {

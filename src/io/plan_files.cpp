@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "io/csv.hpp"
+#include "io/geojson.hpp"
+#include "recording/plan_limits.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/test_path.hpp"
@@ -8,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <string>
 #include <string_view>
@@ -23,10 +26,8 @@ using nlohmann::json;
 
 constexpr std::array<std::string_view, 10> kPlanColumns = {
     "number", "landmark", "x", "y", "heading", "speed", "bend", "turn", "turn_rate", "stop_s"};
-constexpr double kFarthest = 1e6;       // m
-constexpr double kFastest = 100.0;      // m/s, rad/s
-constexpr double kMostTurned = 1000.0;  // rad
-constexpr double kLongestStop = 1e5;    // s
+constexpr double kFarthest = 1e6;   // m
+constexpr double kFastest = 100.0;  // m/s, rad/s
 constexpr double kLargestLoad = 1e9;
 
 /// A row as it stands, each number by itself.
@@ -38,10 +39,10 @@ Waypoint read_waypoint(const CsvReader& table, const std::vector<int>& loads) {
   one.landmark = table.field(table.require("landmark"));
   if (one.landmark.empty()) table.fail("landmark is empty, expected the name of one");
   one.place = {number("x", kFarthest), number("y", kFarthest)};
-  one.heading = number("heading", kMostTurned);
+  one.heading = number("heading", kMostTurn);
   one.speed = number("speed", kFastest);
-  one.bend = number("bend", kMostTurned);
-  one.turn = number("turn", kMostTurned);
+  one.bend = number("bend", kMostTurn);
+  one.turn = number("turn", kMostTurn);
   one.turn_rate = number("turn_rate", kFastest);
   one.stop = number("stop_s", kLongestStop);
   for (const int column : loads) one.loads.push_back(table.number(column, kLargestLoad));
@@ -66,19 +67,9 @@ void require_drivable(const CsvReader& table, const Waypoint& one, const Waypoin
     table.fail(fmt::format("turn_rate is {:g} rad/s, expected above 0 where turn is not 0",
                            one.turn_rate));
   }
-  if (one.bend > 1.0 || one.bend < -1.0) {
+  if (std::abs(one.bend) > kSharpestBend) {
     table.fail(fmt::format("bend is {:g}, expected -1 to 1 rad (are these degrees?)", one.bend));
   }
-}
-
-json coordinates_of(const Waypoint& one) {
-  return {one.place.x(), one.place.y()};
-}
-
-json feature(const char* type, json coordinates, json properties) {
-  return {{"type", "Feature"},
-          {"geometry", {{"type", type}, {"coordinates", std::move(coordinates)}}},
-          {"properties", std::move(properties)}};
 }
 
 }  // namespace
@@ -157,16 +148,16 @@ std::string format_plan_geojson(const DrivePlan& plan) {
     for (std::size_t load = 0; load < plan.loads.size(); ++load) {
       properties[plan.loads[load]] = one.loads[load];
     }
-    features.push_back(feature("Point", coordinates_of(one), std::move(properties)));
+    features.push_back(geojson_point(one.place, std::move(properties)));
   }
   for (std::size_t k = 1; k < plan.waypoints.size(); ++k) {
     const Waypoint& from = plan.waypoints[k - 1];
     const Waypoint& to = plan.waypoints[k];
-    features.push_back(feature(
-        "LineString", {coordinates_of(from), coordinates_of(to)},
+    features.push_back(geojson_line(
+        from.place, to.place,
         {{"from", from.landmark}, {"to", to.landmark}, {"speed", to.speed}, {"bend", to.bend}}));
   }
-  return json{{"type", "FeatureCollection"}, {"features", features}}.dump(1) + "\n";
+  return geojson_text(features);
 }
 
 }  // namespace trussmap

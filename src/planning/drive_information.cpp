@@ -25,17 +25,12 @@ EffectParameters held_at(EffectParameters border, const Eigen::VectorXd& offsets
   return border;
 }
 
-struct Columns {
-  Eigen::MatrixXd map;  ///< by landmarks, then orientations
-  Eigen::Index orientations = 0;
-};
-
-/// Rows by the map's unknowns. A survey's stand at its own node.
-Columns map_columns(const RecordingProblem& problem, const RecordingSystem& system, bool survey) {
+/// Rows by the map's unknowns, landmarks, then orientations. A survey's stand at its own node.
+Eigen::MatrixXd map_columns(const RecordingProblem& problem, const RecordingSystem& system,
+                            bool survey) {
   const Eigen::Index places = Eigen::Index{2} * problem.landmark_count();
-  Columns result;
-  result.orientations = static_cast<Eigen::Index>(problem.oriented.size());
-  result.map = Eigen::MatrixXd::Zero(system.rows(), places + result.orientations);
+  const auto orientations = static_cast<Eigen::Index>(problem.oriented.size());
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(system.rows(), places + orientations);
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     const bool surveyed = one.session < 0;
@@ -45,17 +40,17 @@ Columns map_columns(const RecordingProblem& problem, const RecordingSystem& syst
     if (problem.is_landmark(node)) {
       const Eigen::Index at = Eigen::Index{2} * node;
       if (surveyed) {
-        result.map.block(row, at, one.rows, 2) =
+        result.block(row, at, one.rows, 2) =
             system.root_weight(k) * one.whitener.topLeftCorner(one.rows, 2);
       } else {
-        result.map.block(row, at, one.rows, 2) = system.rows_by_to(k).leftCols(2);
+        result.block(row, at, one.rows, 2) = system.rows_by_to(k).leftCols(2);
       }
     } else if (problem.is_orientation(node)) {
       const Eigen::Index at = places + node - problem.pose_end();
       if (surveyed) {
-        result.map(row, at) = system.root_weight(k) * one.whitener(0, 0);
+        result(row, at) = system.root_weight(k) * one.whitener(0, 0);
       } else {
-        result.map.block(row, at, one.rows, 1) = system.rows_by_to(k).leftCols(1);
+        result.block(row, at, one.rows, 1) = system.rows_by_to(k).leftCols(1);
       }
     }
   }
@@ -92,6 +87,11 @@ Eigen::MatrixXd without(const Eigen::MatrixXd& A, const std::vector<Eigen::Index
   return left;
 }
 
+Eigen::Index DriveInformation::column_of(const std::string& landmark) const {
+  const auto found = std::find(landmarks.begin(), landmarks.end(), landmark);
+  return found == landmarks.end() ? -1 : 2 * static_cast<Eigen::Index>(found - landmarks.begin());
+}
+
 DriveInformation information_of(const FitState& fit, const InformationOf& what) {
   const Eigen::VectorXd offsets = offsets_of(fit);
   const NoiseFree clean(fit.recordings, fit.model, fit.problem, fit.columns.border, offsets,
@@ -110,8 +110,7 @@ DriveInformation information_of(const FitState& fit, const InformationOf& what) 
                      "them");
   }
   ColumnBuilder builder(clean.context, clean.problem, clean.border, offsets, clean.state, weights);
-  const Columns map = map_columns(clean.problem, system, what.survey);
-  Eigen::MatrixXd F = map.map;
+  Eigen::MatrixXd F = map_columns(clean.problem, system, what.survey);
   append_columns(F, effect_columns_of(builder, what.own));
   const Eigen::Index own_end = F.cols();
   append_columns(F, effect_columns_of(builder, what.effects));
@@ -130,8 +129,7 @@ namespace {
 void add_to(DriveInformation& sum, const DriveInformation& one) {
   std::vector<Eigen::Index> at;
   for (const std::string& name : one.landmarks) {
-    const auto place = std::find(sum.landmarks.begin(), sum.landmarks.end(), name);
-    const Eigen::Index first = 2 * static_cast<Eigen::Index>(place - sum.landmarks.begin());
+    const Eigen::Index first = sum.column_of(name);
     at.push_back(first);
     at.push_back(first + 1);
   }

@@ -34,6 +34,8 @@ struct DriveInformation {
   [[nodiscard]] Eigen::Index first_column() const {
     return 2 * static_cast<Eigen::Index>(landmarks.size());
   }
+  /// The first of a landmark's two; -1 where it is not there.
+  [[nodiscard]] Eigen::Index column_of(const std::string& landmark) const;
 };
 
 struct InformationOf {

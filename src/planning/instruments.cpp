@@ -11,26 +11,18 @@
 namespace trussmap {
 namespace {
 
-constexpr double kTape = 0.002;  // m
-constexpr double kSurveyedBy =
-    2.0;  // of the survey's sd: landmarks that are known as well are surveyed
+constexpr double kTape = 0.002;      // m
+constexpr double kSurveyedBy = 2.0;  // survey's sds: landmarks known as well are surveyed
 constexpr std::array kInstruments = {Instrument::compass,      Instrument::gyro,
                                      Instrument::range_sensor, Instrument::distance,
                                      Instrument::survey,       Instrument::truth};
-
-/// Where a landmark's coordinates are among the unknowns; -1: it is not there.
-Eigen::Index place_of(const DriveInformation& known, const std::string& landmark) {
-  const auto found = std::find(known.landmarks.begin(), known.landmarks.end(), landmark);
-  if (found == known.landmarks.end()) return -1;
-  return 2 * static_cast<Eigen::Index>(found - known.landmarks.begin());
-}
 
 /// A tape between the plan's first two landmarks.
 void measure_distance(const DrivePlan& plan, DriveInformation& known) {
   const Waypoint& from = plan.waypoints[0];
   const Waypoint& to = plan.waypoints[1];
-  const Eigen::Index a = place_of(known, from.landmark);
-  const Eigen::Index b = place_of(known, to.landmark);
+  const Eigen::Index a = known.column_of(from.landmark);
+  const Eigen::Index b = known.column_of(to.landmark);
   if (a < 0 || b < 0) return;
   Eigen::VectorXd row = Eigen::VectorXd::Zero(known.H.cols());
   const Vector2 along = (to.place - from.place).normalized() / kTape;

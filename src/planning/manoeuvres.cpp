@@ -10,10 +10,6 @@
 namespace trussmap {
 namespace {
 
-constexpr double kStand = 30.0;       // s
-constexpr double kLongStand = 300.0;  // s: until time and distance have gone apart
-constexpr double kBend = 0.8;         // rad
-
 std::vector<double> first_levels(const PlanWorld& world) {
   std::vector<double> levels;
   for (const LoadLevels& load : world.loads) levels.push_back(load.levels.front());

@@ -15,6 +15,10 @@
 
 namespace trussmap {
 
+inline constexpr double kStand = 30.0;       // s
+inline constexpr double kLongStand = 300.0;  // s: until time and distance have gone apart
+inline constexpr double kBend = 0.8;         // rad
+
 struct Manoeuvre {
   int to = 0;          ///< landmark
   double speed = 0.0;  ///< m/s

@@ -3,46 +3,21 @@
 #include "criticism/candidates.hpp"
 #include "criticism/score_test.hpp"
 #include "geometry/index.hpp"
-#include "planning/instruments.hpp"
+#include "planning/drive_for_questions.hpp"
 #include "planning/rivals.hpp"
-#include "planning/tour_search.hpp"
 #include "statistics/distributions.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/session.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
 #include <stdexcept>
 #include <utility>
 
 namespace trussmap {
 namespace {
 
-constexpr double kBeyondTour = 0.25;    // of the lambda wanted: a thorough tour shows less of it
-constexpr std::size_t kMostOfMap = 30;  // landmarks
-constexpr double kFastest = 0.9;        // m/s
-
-/// The start and the nearest landmarks by routes, by their numbers in the map.
-std::vector<int> places_near(const LandmarkGraph& map, int start) {
-  std::vector<int> found;
-  std::vector<bool> done(idx(map.landmarks()), false);
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  queue.emplace(0.0, start);
-  while (!queue.empty() && found.size() < kMostOfMap) {
-    const auto [way, here] = queue.top();
-    queue.pop();
-    if (done[idx(here)]) continue;
-    done[idx(here)] = true;
-    found.push_back(here);
-    for (const int route : map.routes_at(here)) {
-      const int to = other_end(map.route(route), here);
-      queue.emplace(way + (map.landmark(to).position - map.landmark(here).position).norm(), to);
-    }
-  }
-  return found;
-}
+constexpr double kFastest = 0.9;  // m/s
 
 int start_on(const LandmarkGraph& map, const std::string& name) {
   if (map.landmarks() == 0) throw std::invalid_argument("the map has no landmark");
@@ -54,23 +29,22 @@ int start_on(const LandmarkGraph& map, const std::string& name) {
   return *start;
 }
 
-PlanWorld world_on(const LandmarkGraph& map, const Model& model, const AcceptanceOptions& options) {
-  PlanWorld world;
-  const std::vector<int> places = places_near(map, start_on(map, options.start));
-  std::vector<int> numbers(idx(map.landmarks()), -1);
-  for (const int place : places) {
-    numbers[idx(place)] = static_cast<int>(world.mesh.names.size());
-    world.mesh.names.push_back(map.landmark(place).name);
-    world.mesh.positions.push_back(map.landmark(place).position);
-  }
-  for (const int place : places) {
-    world.exits.emplace_back();
+RouteNetwork routes_of(const LandmarkGraph& map) {
+  RouteNetwork routes;
+  for (int place = 0; place < map.landmarks(); ++place) {
+    routes.names.push_back(map.landmark(place).name);
+    routes.positions.push_back(map.landmark(place).position);
+    routes.exits.emplace_back();
     for (const int route : map.routes_at(place)) {
-      const int to = numbers[idx(other_end(map.route(route), place))];
-      if (to >= 0) world.exits.back().push_back(to);
+      routes.exits.back().push_back(other_end(map.route(route), place));
     }
   }
-  world.mesh.size = {static_cast<int>(places.size()), 1};
+  return routes;
+}
+
+PlanWorld world_on(const LandmarkGraph& map, const Model& model, const AcceptanceOptions& options) {
+  PlanWorld world;
+  lay_near(start_on(map, options.start), routes_of(map), world);
   world.model = model;
   world.model.effects.clear();
   world.robot.geometry = model.robot;
@@ -188,38 +162,20 @@ PlannedDrive plan_acceptance(const LandmarkGraph& map, const Model& model,
   const Asked asked = questions_of(result.effects, columns_of(effects), options);
   Eigen::Index columns = 0;
   for (const Effect& one : effects) columns += static_cast<Eigen::Index>(one.shape.size());
-  SearchTask task{world,
-                  known_of(map, world, columns),
-                  effects,
-                  {},
-                  asked.questions,
-                  {},
-                  1.0,
-                  options.most_time,
-                  options.most_length};
-  const std::vector<double> shown = lambdas_of(task, gram_with(task, world, thorough));
-  std::vector<bool> beyond;
-  task.questions.clear();
-  for (std::size_t k = 0; k < shown.size(); ++k) {
-    beyond.push_back(shown[k] < kBeyondTour * asked.questions[k].wanted);
+  const SearchTask task{world,
+                        known_of(map, world, columns),
+                        effects,
+                        {},
+                        asked.questions,
+                        {},
+                        1.0,
+                        options.most_time,
+                        options.most_length};
+  const std::vector<bool> beyond = beyond_drives(task, lambdas_of(task, gram_before(task)));
+  for (std::size_t k = 0; k < beyond.size(); ++k) {
     if (beyond[k]) result.effects[asked.effects[k]].beyond = true;
-    if (!beyond[k]) task.questions.push_back(asked.questions[k]);
   }
-  const auto tell_without_drive = [&] {
-    task.questions = asked.questions;
-    tell_effects(asked, lambdas_of(task, gram_before(task)), beyond, result);
-    return result;
-  };
-  if (task.questions.empty()) return tell_without_drive();
-  const FoundTour found = search_tour(task);
-  result.enough = found.value.least >= 1.0;
-  if (found.tour.legs.empty()) return tell_without_drive();
-  result.plan = plan_of(world, found.tour);
-  result.length = found.value.length;
-  result.duration = found.value.time;
-  task.questions = asked.questions;
-  tell_effects(asked, lambdas_of(task, gram_with(task, world, result.plan)), beyond, result);
-  result.worth = worth_of_instruments(task, result.plan, beyond);
+  tell_effects(asked, drive_for(task, beyond, result), beyond, result);
   return result;
 }
 

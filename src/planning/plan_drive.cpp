@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "planning/instruments.hpp"
+#include "planning/drive_for_questions.hpp"
 #include "planning/recorded_world.hpp"
 #include "planning/rivals.hpp"
-#include "planning/tour_search.hpp"
 #include "statistics/distributions.hpp"
 #include "trussmap/session.hpp"
 
@@ -14,8 +13,6 @@
 
 namespace trussmap {
 namespace {
-
-constexpr double kBeyond = 0.25;  // of the lambda that is lacking: a thorough tour tells less of it
 
 /// Whether any goes with what depends on all that was driven before.
 bool goes_on(const std::vector<Effect>& rivals, const PlanWorld& world) {
@@ -90,19 +87,16 @@ SearchTask task_of(const FitState& fit, const RivalSubject& subject, const PlanW
   return task;
 }
 
-/// Pairs as the recordings leave them, and which of them a thorough tour does not tell.
+/// Pairs as the recordings leave them.
 std::vector<PlannedPair> pairs_before(const RivalSubject& subject, const AskedPairs& asked,
-                                      const SearchTask& task) {
-  const std::vector<double> before = lambdas_of(task, gram_before(task));
-  const std::vector<double> thorough =
-      lambdas_of(task, gram_with(task, task.world, plan_of(task.world, thorough_tour(task.world))));
+                                      const std::vector<double>& before,
+                                      const std::vector<bool>& beyond) {
   std::vector<PlannedPair> pairs;
   for (std::size_t k = 0; k < asked.pairs.size(); ++k) {
-    const Question& question = asked.questions[k];
     PlannedPair pair{subject.rivals[asked.pairs[k].truth], subject.rivals[asked.pairs[k].rival]};
     pair.before = pair.after = before[k];
-    pair.power_before = pair.power = power_of(question, before[k]);
-    pair.beyond = thorough[k] - before[k] < kBeyond * (question.wanted - before[k]);
+    pair.power_before = pair.power = power_of(asked.questions[k], before[k]);
+    pair.beyond = beyond[k];
     pairs.push_back(std::move(pair));
   }
   return pairs;
@@ -122,33 +116,19 @@ PlannedDrive plan_drive(const Diagnosis& diagnosis, const PlanOptions& options) 
   SearchTask task = task_of(fit, subject, world, options);
   const AskedPairs asked = ask_pairs(subject, columns_of(task.effects), options);
   task.questions = asked.questions;
+  const std::vector<double> before = lambdas_of(task, gram_before(task));
+  const std::vector<bool> beyond = beyond_drives(task, before);
   PlannedDrive result;
   result.options = options;
-  result.pairs = pairs_before(subject, asked, task);
-  std::vector<bool> beyond;
-  task.questions.clear();
-  for (std::size_t k = 0; k < result.pairs.size(); ++k) {
-    beyond.push_back(result.pairs[k].beyond);
-    if (!beyond[k]) task.questions.push_back(asked.questions[k]);
-  }
-  if (task.questions.empty()) return result;
-  const FoundTour found = search_tour(task);
-  result.enough = found.value.least >= 1.0;
-  task.questions = asked.questions;
-  if (!found.tour.legs.empty()) {
-    result.plan = plan_of(world, found.tour);
-    result.length = found.value.length;
-    result.duration = found.value.time;
-    const std::vector<double> after = lambdas_of(task, gram_with(task, world, result.plan));
-    for (std::size_t k = 0; k < after.size(); ++k) {
-      result.pairs[k].after = after[k];
-      result.pairs[k].power = power_of(asked.questions[k], after[k]);
-    }
-    result.worth = worth_of_instruments(task, result.plan, beyond);
-  }
+  result.pairs = pairs_before(subject, asked, before, beyond);
+  if (std::find(beyond.begin(), beyond.end(), false) == beyond.end()) return result;
+  const std::vector<double> after = drive_for(task, beyond, result);
   result.power = 1.0;
-  for (const PlannedPair& one : result.pairs) {
-    if (!one.beyond) result.power = std::min(result.power, one.power);
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    PlannedPair& pair = result.pairs[k];
+    pair.after = after[k];
+    pair.power = power_of(asked.questions[k], after[k]);
+    if (!pair.beyond) result.power = std::min(result.power, pair.power);
   }
   return result;
 }

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "planning/plan_world.hpp"
 
+#include "geometry/index.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
 #include <utility>
 
 namespace trussmap {
@@ -42,7 +46,45 @@ void name_columns(const PlanWorld& world, Recording& recording) {
   }
 }
 
+/// The start and the nearest landmarks by routes.
+std::vector<int> near(int start, const RouteNetwork& routes) {
+  constexpr std::size_t kMostPlaces = 30;
+  std::vector<int> found;
+  std::vector<bool> done(routes.names.size(), false);
+  using Entry = std::pair<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  queue.emplace(0.0, start);
+  while (!queue.empty() && found.size() < kMostPlaces) {
+    const auto [way, here] = queue.top();
+    queue.pop();
+    if (done[idx(here)]) continue;
+    done[idx(here)] = true;
+    found.push_back(here);
+    for (const int to : routes.exits[idx(here)]) {
+      queue.emplace(way + (routes.positions[idx(to)] - routes.positions[idx(here)]).norm(), to);
+    }
+  }
+  return found;
+}
+
 }  // namespace
+
+void lay_near(int start, const RouteNetwork& routes, PlanWorld& world) {
+  const std::vector<int> places = near(start, routes);
+  std::vector<int> numbers(routes.names.size(), -1);
+  for (const int place : places) {
+    numbers[idx(place)] = static_cast<int>(world.mesh.names.size());
+    world.mesh.names.push_back(routes.names[idx(place)]);
+    world.mesh.positions.push_back(routes.positions[idx(place)]);
+  }
+  for (const int place : places) {
+    world.exits.emplace_back();
+    for (const int to : routes.exits[idx(place)]) {
+      if (numbers[idx(to)] >= 0) world.exits.back().push_back(numbers[idx(to)]);
+    }
+  }
+  world.mesh.size = {static_cast<int>(world.mesh.names.size()), 1};
+}
 
 DrivenRecording planned_recording(const PlanWorld& world, const DrivePlan& plan) {
   DrivingStyle style;

@@ -42,6 +42,16 @@ struct PlanWorld {
   std::vector<ColumnInTime> columns;  ///< that nobody sets: they go on as they were recorded
 };
 
+/// Landmarks and the routes between them.
+struct RouteNetwork {
+  std::vector<std::string> names;
+  std::vector<Vector2> positions;
+  std::vector<std::vector<int>> exits;  ///< per landmark, to where routes lead
+};
+
+/// Gives a world the start, as its first landmark, and the nearest others by routes, up to 30.
+void lay_near(int start, const RouteNetwork& routes, PlanWorld& world);
+
 /// What the robot records of the plan without noise; the survey has all landmarks, exactly.
 [[nodiscard]] DrivenRecording planned_recording(const PlanWorld& world, const DrivePlan& plan);
 

@@ -9,8 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
-#include <queue>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -20,10 +20,9 @@
 namespace trussmap {
 namespace {
 
-constexpr double kStraight = 1.2;        // driven length over distance of a route
-constexpr std::size_t kMostPlaces = 30;  // landmarks of a plan
-constexpr double kMoves = 0.02;          // m/s, rad/s
-constexpr double kMostFixRate = 1.0;     // Hz
+constexpr double kStraight = 1.2;     // driven length over distance of a route
+constexpr double kMoves = 0.02;       // m/s, rad/s
+constexpr double kMostFixRate = 1.0;  // Hz
 
 using Exits = std::map<std::string, std::set<std::string>>;
 
@@ -77,24 +76,20 @@ std::string start_of(const FitState& fit, const Exits& exits, const std::string&
   return exits.begin()->first;
 }
 
-/// The start and the nearest landmarks by routes.
-std::vector<std::string> near(const std::string& start, const Exits& exits,
-                              const std::map<std::string, Vector2>& places) {
-  std::vector<std::string> found;
-  std::set<std::string> done;
-  using Entry = std::pair<double, std::string>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  queue.emplace(0.0, start);
-  while (!queue.empty() && found.size() < kMostPlaces) {
-    const auto [way, here] = queue.top();
-    queue.pop();
-    if (!done.insert(here).second) continue;
-    found.push_back(here);
-    for (const std::string& to : exits.at(here)) {
-      queue.emplace(way + (places.at(to) - places.at(here)).norm(), to);
-    }
+/// Landmarks that routes lead to, in the order of their names.
+RouteNetwork network_of(const Exits& exits, const std::map<std::string, Vector2>& places) {
+  RouteNetwork routes;
+  std::map<std::string, int> numbers;
+  for (const auto& [name, others] : exits) {
+    numbers[name] = static_cast<int>(routes.names.size());
+    routes.names.push_back(name);
+    routes.positions.push_back(places.at(name));
   }
-  return found;
+  for (const auto& [name, others] : exits) {
+    routes.exits.emplace_back();
+    for (const std::string& to : others) routes.exits.back().push_back(numbers.at(to));
+  }
+  return routes;
 }
 
 double quantile_of(std::vector<double> values, double share, double otherwise) {
@@ -229,30 +224,21 @@ PlanWorld recorded_world(const FitState& fit, const std::vector<std::string>& va
                          const std::string& start, double max_speed) {
   const std::map<std::string, Vector2> places = landmark_places(fit);
   const Exits exits = routes_of(fit, places);
-  const std::vector<std::string> names = near(start_of(fit, exits, start), exits, places);
+  const std::string first = start_of(fit, exits, start);
   PlanWorld world;
+  lay_near(static_cast<int>(std::distance(exits.begin(), exits.find(first))),
+           network_of(exits, places), world);
   world.model = fit.model;
   world.model.effects.clear();
   learn_rates(fit, max_speed, world);
   learn_sensors(fit, world);
   learn_columns(fit, variables, world);
-  std::map<std::string, int> numbers;
-  const auto add = [&](const std::string& name) {
-    numbers[name] = static_cast<int>(world.mesh.names.size());
+  if (!world.robot.range_sensor) return world;
+  const std::set<std::string> laid(world.mesh.names.begin(), world.mesh.names.end());
+  for (const auto& [name, place] : places) {
+    if (laid.contains(name)) continue;
     world.mesh.names.push_back(name);
-    world.mesh.positions.push_back(places.at(name));
-  };
-  for (const std::string& name : names) add(name);
-  world.exits.resize(names.size());
-  for (const std::string& name : names) {
-    for (const std::string& to : exits.at(name)) {
-      if (numbers.contains(to)) world.exits[idx(numbers[name])].push_back(numbers[to]);
-    }
-  }
-  if (world.robot.range_sensor) {
-    for (const auto& [name, place] : places) {
-      if (!numbers.contains(name)) add(name);
-    }
+    world.mesh.positions.push_back(place);
   }
   world.mesh.size = {static_cast<int>(world.mesh.names.size()), 1};
   return world;

@@ -254,8 +254,8 @@ PlannedTour thorough_tour(const PlanWorld& world) {
     leg.speed = world.speeds[k % world.speeds.size()];
     leg.rate = world.turn_rates[(k / 2) % world.turn_rates.size()];
     leg.turns = std::array<int, 4>{2, -2, 0, 0}[k % 4];
-    leg.bend = std::array<double, 5>{0.0, 0.0, 0.8, 0.0, -0.8}[k % 5];
-    leg.stand = k == 5 ? 300.0 : k % 6 == 5 ? 30.0 : 0.0;
+    leg.bend = std::array<double, 5>{0.0, 0.0, kBend, 0.0, -kBend}[k % 5];
+    leg.stand = k == 5 ? kLongStand : k % 6 == 5 ? kStand : 0.0;
     for (std::size_t load = 0; load < world.loads.size(); ++load) {
       const std::vector<double>& levels = world.loads[load].levels;
       leg.loads[load] = levels[(k / (load + 3)) % levels.size()];

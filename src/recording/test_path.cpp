@@ -36,13 +36,19 @@ double largest_end_error(const TestPath& path, double wheelbase) {
   return longest;
 }
 
+namespace {
+
+/// Headings go as a cosine over the way: what it leads to is shorter by J0 of its amplitude.
+double leg_length(const Waypoint& from, const Waypoint& to) {
+  return (to.place - from.place).norm() / std::cyl_bessel_j(0.0, 0.5 * std::abs(to.bend));
+}
+
+}  // namespace
+
 double plan_length(const DrivePlan& plan) {
   double sum = 0.0;
   for (std::size_t k = 1; k < plan.waypoints.size(); ++k) {
-    const Waypoint& to = plan.waypoints[k];
-    // Headings go as a cosine over the way: what it leads to is shorter by J0 of its amplitude.
-    sum += (to.place - plan.waypoints[k - 1].place).norm() /
-           std::cyl_bessel_j(0.0, 0.5 * std::abs(to.bend));
+    sum += leg_length(plan.waypoints[k - 1], plan.waypoints[k]);
   }
   return sum;
 }
@@ -53,7 +59,7 @@ double plan_duration(const DrivePlan& plan) {
     const Waypoint& one = plan.waypoints[k];
     sum += one.stop;
     if (one.turn != 0.0) sum += std::abs(one.turn) / one.turn_rate;
-    if (k > 0) sum += plan_length({{}, {plan.waypoints[k - 1], one}}) / one.speed;
+    if (k > 0) sum += leg_length(plan.waypoints[k - 1], one) / one.speed;
   }
   return sum;
 }

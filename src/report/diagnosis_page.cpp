@@ -96,9 +96,7 @@ ResultRows missing_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& evi
       rows.otherwise.push_back(std::move(sentence));
     }
   }
-  for (const ChangingCoefficient& one : diagnosis.changing) {
-    rows.otherwise.push_back(typeset(capitalised(in_words(one)) + "."));
-  }
+  for (std::string& one : changing_sentences(diagnosis)) rows.otherwise.push_back(std::move(one));
   if (diagnosis.next_drive) {
     rows.next.push_back("To tell them apart, " + in_words(diagnosis.next_drive) + ".");
   }
@@ -161,9 +159,7 @@ ResultRows changing_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& ev
   ResultRows rows;
   const ChangingCoefficient& first = diagnosis.changing.front();
   rows.missing = {capitalised(objection_in_words(diagnosis, evidence.given.comparison)) + "."};
-  for (const ChangingCoefficient& one : diagnosis.changing) {
-    rows.large.push_back(typeset(capitalised(in_words(one)) + "."));
-  }
+  rows.large = changing_sentences(diagnosis);
   rows.sure = {
       fmt::format("Were it the same all the time, noise would show as much with "
                   "probability {}.",
@@ -279,8 +275,7 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidenc
   PageSection maps = maps_section("Where legs end off", models, evidence.effects);
   if (place) page.sections.push_back(maps);
   if (!evidence.effects.empty()) page.sections.push_back(cause_section(sized, evidence));
-  PageSection changing = changing_section(diagnosis);
-  if (!changing.blocks.empty()) page.sections.push_back(std::move(changing));
+  add_changes(diagnosis, page);
   const bool noise_first = evidence.effects.empty() && noise_is_wrong(diagnosis);
   PageSection noise =
       noise_first ? noise_section(given, diagnosis.under->noise) : noise_section(models);

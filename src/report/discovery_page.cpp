@@ -237,8 +237,7 @@ Page discovery_page(const Discovery& discovery, const DiscoveryEvidence& evidenc
   if (noise_alone) page.sections.push_back(noise);
   page.sections.push_back(
       maps_section("Where legs end off, model by model", models, evidence.effects));
-  PageSection changing = changing_section(discovery.last);
-  if (!changing.blocks.empty()) page.sections.push_back(std::move(changing));
+  add_changes(discovery.last, page);
   if (!noise_alone) page.sections.push_back(std::move(noise));
   page.sections.push_back(trend_section("What errors go with, in the model found",
                                         evidence.found.comparison, evidence.trends));

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "geometry/units.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/texts.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include <fmt/format.h>
@@ -122,7 +122,7 @@ std::string effects_part(const PlannedDrive& drive, TextStyle style) {
 
 std::string turn_text(const Waypoint& one) {
   if (one.turn == 0.0) return "";
-  const double degrees = one.turn * 180.0 / std::numbers::pi;
+  const double degrees = kDegrees * one.turn;
   if (std::abs(degrees) < 0.5) return "";
   return fmt::format("{:.0f} deg {} at {:g} rad/s", std::abs(degrees),
                      degrees > 0.0 ? "left" : "right", one.turn_rate);

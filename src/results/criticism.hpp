@@ -253,7 +253,8 @@ inline constexpr auto kDescribed<ChangingCoefficient> = described(
     field("fitted", &ChangingCoefficient::fitted, "the same all the time, as the model has it"),
     share("p_value", &ChangingCoefficient::p_value, "of no change, times all that was tried"),
     field("chi2_decrease", &ChangingCoefficient::chi2_decrease,
-          "that allowing for it takes away (a walk: of -2 log likelihood)"),
+          "that allowing for it takes away (a walk: of -2 log likelihood, times the dispersion "
+          "left)"),
     field("recording", of_step<&ChangingCoefficient::session>, "of a step: place, from 0 on"),
     field("between", of_step<&ChangingCoefficient::between>,
           "of a step: whether it is before the first drive of that recording"),

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/driving_checks.hpp"
 
+#include "recording/plan_limits.hpp"
 #include "simulation/further_columns.hpp"
 
 #include <algorithm>
@@ -13,8 +14,6 @@
 
 namespace trussmap {
 namespace {
-
-constexpr double kMostTurn = 1000.0;  // rad
 
 void require(bool holds, const std::string& what) {
   if (!holds) throw std::invalid_argument(what);
@@ -61,10 +60,10 @@ void check_orders(const DrivingStyle& style, std::size_t legs) {
   for (const LegOrder& one : style.orders) {
     require(is_range(one.speed, one.speed), "a leg's speed must be above 0 m/s");
     require(is_range(one.turn_rate, one.turn_rate), "a turn's rate must be above 0 rad/s");
-    require(one.rest >= 0.0 && one.rest <= 1e5, "a rest must lie between 0 and 1e5 s");
+    require(one.rest >= 0.0 && one.rest <= kLongestStop, "a rest must lie between 0 and 1e5 s");
     require(std::abs(one.turn) <= kMostTurn,
             fmt::format("a turn must be {} rad at most", kMostTurn));
-    require(std::abs(one.bend) <= 1.0, "a leg must bend by a radian at most");
+    require(std::abs(one.bend) <= kSharpestBend, "a leg must bend by a radian at most");
     require(one.further.size() == style.covariates.size(),
             "a leg needs a value of each further column");
   }

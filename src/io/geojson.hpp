@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// GeoJSON (RFC 7946) of places and ways, in metres of the map frame.
+#pragma once
+
+#include "trussmap/planar.hpp"
+
+#include <string>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace trussmap {
+
+[[nodiscard]] inline nlohmann::json geojson_coordinates(const Vector2& place) {
+  return {place.x(), place.y()};
+}
+
+[[nodiscard]] inline nlohmann::json geojson_point(const Vector2& place, nlohmann::json properties) {
+  return {{"type", "Feature"},
+          {"geometry", {{"type", "Point"}, {"coordinates", geojson_coordinates(place)}}},
+          {"properties", std::move(properties)}};
+}
+
+[[nodiscard]] inline nlohmann::json geojson_line(const Vector2& from, const Vector2& to,
+                                                 nlohmann::json properties) {
+  return {{"type", "Feature"},
+          {"geometry",
+           {{"type", "LineString"},
+            {"coordinates", {geojson_coordinates(from), geojson_coordinates(to)}}}},
+          {"properties", std::move(properties)}};
+}
+
+/// A file's text.
+[[nodiscard]] inline std::string geojson_text(const nlohmann::json& features) {
+  return nlohmann::json{{"type", "FeatureCollection"}, {"features", features}}.dump(1) + "\n";
+}
+
+}  // namespace trussmap
