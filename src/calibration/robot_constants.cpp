@@ -77,7 +77,8 @@ void judge(const ConstantValue& value, const KnownGains& known, RobotConstant& r
     result.note = "these data do not show it";
   } else if (!std::isfinite(value.value) || (is_size && !(value.value > 0.0))) {
     result.determined = false;
-    result.note = "it would not be positive, which no robot has";
+    result.note = value.value < 0.0 ? "it would be negative: are left and right exchanged?"
+                                    : "it would not be positive, which no robot has";
   } else if (value.kind == ConstantKind::wheel && mean_unknown) {
     result.note += "; their mean was not determined";
   }

@@ -125,6 +125,15 @@ std::map<Channel, double> steering_of(const Model& calibrated) {
 
 }  // namespace
 
+bool is_gross(const Effect& constant) {
+  using enum Channel;
+  const Channel of = constant.channel;
+  const bool factor = of == travel || of == turn || of == sideways || of == difference ||
+                      of == wheels || of == left || of == right;
+  const double g = constant.coefficients.front();
+  return (factor && std::abs(g) >= kGross) || is_far_place(of, g);
+}
+
 bool is_far_place(Channel channel, double g) {
   using enum Channel;
   const bool turned = channel == scanner_yaw || channel == bearing || channel == truth_heading;

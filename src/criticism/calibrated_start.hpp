@@ -17,6 +17,9 @@ inline constexpr double kGross = 0.05;  ///< of a factor
 /// where it is stated to.
 [[nodiscard]] bool is_far_place(Channel channel, double g);
 
+/// Whether a constant is: a factor by kGross, a place far from where it is stated.
+[[nodiscard]] bool is_gross(const Effect& constant);
+
 /// The constants as a calibration of the drive has them, where it leads anywhere, as a start.
 struct CalibratedStart {
   std::vector<Effect> constants;

@@ -50,6 +50,12 @@ HorizonChange reckoned_change(const ModelFit& present, const ModelFit& other) {
   return change.windows < kFewestWindows ? HorizonChange{} : change;
 }
 
+void tell_fit(const ModelFit& fit, DiscoveryStep& step) {
+  step.chi2 = fit.chi2;
+  step.dof = fit.dof;
+  step.left_out = fit.left_out.size();
+}
+
 /// Adds what is found, one effect after the other.
 class Discoverer {
  public:
@@ -117,15 +123,9 @@ class Discoverer {
     if (result_.last.under) {
       grown_.take_fit(result_.last.under->fit);
       if (result_.steps.size() == 1) result_.given = grown_.fit();
-      tell_fit(step);
+      tell_fit(grown_.fit(), step);
     }
     tell_reckoning(step);
-  }
-
-  void tell_fit(DiscoveryStep& step) const {
-    step.chi2 = grown_.fit().chi2;
-    step.dof = grown_.fit().dof;
-    step.left_out = grown_.fit().left_out.size();
   }
 
   void tell_reckoning(DiscoveryStep& step) {
@@ -136,7 +136,7 @@ class Discoverer {
   /// A line of the ladder for the present fit; its diagnosis, which is next, has the held-out legs.
   DiscoveryStep& record() {
     DiscoveryStep step;
-    tell_fit(step);
+    tell_fit(grown_.fit(), step);
     result_.steps.push_back(std::move(step));
     return result_.steps.back();
   }

@@ -29,4 +29,12 @@ double chi2_of_all(const ModelFit& fit) {
   return fit.chi2 + fit.options.gate.value_or(0.0) * static_cast<double>(fit.left_out.size());
 }
 
+double scatter_left(const ModelFit& fit) {
+  return std::max(1.0, fit.chi2 / std::max(1, fit.dof));
+}
+
+bool does_as_well(const ModelFit& with_fewer, const ModelFit& fit) {
+  return chi2_of_all(with_fewer) - chi2_of_all(fit) < kWorthKeeping * scatter_left(fit);
+}
+
 }  // namespace trussmap

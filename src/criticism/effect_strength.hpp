@@ -20,4 +20,10 @@ inline constexpr double kWorthKeeping = 15.0;
 /// What the gate left out costs what it allows, or a fit would be the better for leaving out more.
 [[nodiscard]] double chi2_of_all(const ModelFit& fit);
 
+/// chi^2/dof, at least 1.
+[[nodiscard]] double scatter_left(const ModelFit& fit);
+
+/// Whether a fit with fewer constants is hardly worse.
+[[nodiscard]] bool does_as_well(const ModelFit& with_fewer, const ModelFit& fit);
+
 }  // namespace trussmap

@@ -9,6 +9,7 @@
 #include "effects/steering.hpp"
 #include "fit/fit_state.hpp"
 #include "odometry/wheels_and_gyro.hpp"
+#include "trussmap/catalogue.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -71,6 +72,18 @@ std::optional<ModelFit> fitted_from_starts(const std::vector<DrivenRecording>& r
   return fit;
 }
 
+/// A factor of -1: wheels exchanged, one that counts backwards, all of them.
+std::vector<Effect> wrong_signs(const Robot& robot) {
+  constexpr double kOther = -2.0;
+  std::vector<Effect> result{catalogue_effect("wheelbase", {kOther})};
+  if (robot.drive == DriveKind::differential) {
+    result.push_back({"left wheel", Channel::left, {"1"}, {kOther}});
+    result.push_back({"right wheel", Channel::right, {"1"}, {kOther}});
+  }
+  result.push_back(catalogue_effect("wheel scale", {kOther}));
+  return result;
+}
+
 double cost_of(const ModelFit& fit) {
   constexpr double kPerCoefficient = 4.0;  // of chi^2
   const Effect& effect = fit.model.effects.back();
@@ -85,6 +98,11 @@ std::optional<ModelFit> gross_cause(const std::vector<DrivenRecording>& recordin
   if (given.chi2 < kGrossMisfit * std::max(1, given.dof)) return std::nullopt;
   if (state.problem.measurements.size() > kMostMeasurements) return std::nullopt;
   const ScoreTest tests(state);
+  for (const Effect& wrong : wrong_signs(given.model.robot)) {
+    if (tests.is_present(wrong)) continue;
+    // Nothing else does what it does.
+    if (std::optional<ModelFit> fit = fitted_alone(recordings, given, wrong)) return fit;
+  }
   std::optional<ModelFit> best;
   for (const Effect& cause : causes_for(given, tests, scale)) {
     std::optional<ModelFit> fit = fitted_from_starts(recordings, given, tests, cause);

@@ -6,6 +6,7 @@
 #include "criticism/calibrated_start.hpp"
 #include "criticism/candidates.hpp"
 #include "criticism/effect_strength.hpp"
+#include "criticism/fewest_constants.hpp"
 #include "criticism/gross_cause.hpp"
 #include "criticism/look_alikes.hpp"
 #include "criticism/refits.hpp"
@@ -15,7 +16,6 @@
 #include "fit/fit_state.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 #include "statistics/distributions.hpp"
-#include "statistics/median.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/held_out.hpp"
 #include "validation/held_out_legs.hpp"
@@ -30,16 +30,6 @@ namespace {
 constexpr double kMisfit = 1e-6;       // p of chi^2, below which they are asked for
 constexpr double kFarTooLarge = 10.0;  // chi^2/dof
 constexpr double kMostLeft = 0.5;      // of chi^2/dof, beside them
-
-bool is_motion(Channel channel) {
-  return channel == Channel::travel || channel == Channel::turn || channel == Channel::sideways;
-}
-
-/// Whether its g is a factor less 1.
-bool is_factor(Channel channel) {
-  return is_motion(channel) || channel == Channel::difference || channel == Channel::wheels ||
-         channel == Channel::left || channel == Channel::right;
-}
 
 /// Without a measured distance a smaller map has smaller errors.
 bool is_scale(Channel channel) {
@@ -107,32 +97,20 @@ std::optional<ModelFit> with_all(const std::vector<DrivenRecording>& recordings,
   return better_of(best, fitted_afresh(recordings, given, start->constants));
 }
 
-/// The same fit with other effects from `first` on, their coefficients as found.
-std::optional<ModelFit> with_others(const std::vector<DrivenRecording>& recordings,
-                                    const ModelFit& fit, std::vector<Effect> effects) {
-  Model model = fit.model;
-  model.effects = std::move(effects);
-  return if_possible<ModelFit>([&] { return refit(recordings, model, fit); });
-}
-
 bool is_fitted(const ModelFit& fit, std::size_t effect) {
   return fit.effects[effect].not_fitted.empty();
-}
-
-double noise_of(const ModelFit& fit) {
-  return std::max(1.0, fit.chi2 / std::max(1, fit.dof));
 }
 
 std::optional<ModelFit> without(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                                 std::size_t place) {
   std::vector<Effect> effects = fit.model.effects;
   effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(place));
-  return with_others(recordings, fit, std::move(effects));
+  return refit_by(recordings, fit, std::move(effects));
 }
 
 /// How surely it is there by its standard error: 0 where it was not fitted.
 double strength_of(const ModelFit& fit, std::size_t place) {
-  return is_fitted(fit, place) ? wald(fit, place) / noise_of(fit) : 0.0;
+  return is_fitted(fit, place) ? wald(fit, place) / scatter_left(fit) : 0.0;
 }
 
 /// Without those that are weak by their standard errors, the weakest first.
@@ -151,11 +129,6 @@ std::optional<ModelFit> strong_ones(const std::vector<DrivenRecording>& recordin
   return fit;
 }
 
-bool is_gross(const Effect& one) {
-  const double g = one.coefficients.front();
-  return (is_factor(one.channel) && std::abs(g) >= kGross) || is_far_place(one.channel, g);
-}
-
 /// Without those that a fit without them does hardly worse than: a standard error is of the plane
 /// about the fit. Without what is gross a fit would be lost.
 ModelFit sure_ones(const std::vector<DrivenRecording>& recordings, ModelFit fit,
@@ -163,71 +136,10 @@ ModelFit sure_ones(const std::vector<DrivenRecording>& recordings, ModelFit fit,
   for (std::size_t k = fit.model.effects.size(); k-- > first;) {
     if (is_gross(fit.model.effects[k])) continue;
     std::optional<ModelFit> next = without(recordings, fit, k);
-    if (!next || chi2_of_all(*next) - chi2_of_all(fit) >= kWorthKeeping * noise_of(fit)) continue;
+    if (!next || !does_as_well(*next, fit)) continue;
     fit = *std::move(next);
   }
   return fit;
-}
-
-/// Larger wheels make all that is driven larger alike: one constant instead of two or three.
-ModelFit with_wheel_scale(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
-                          std::size_t first) {
-  const CatalogueRecord* scale = find_record("wheel scale");
-  std::vector<Effect> effects(fit.model.effects.begin(),
-                              fit.model.effects.begin() + static_cast<std::ptrdiff_t>(first));
-  std::vector<double> factors;
-  for (std::size_t k = first; k < fit.model.effects.size(); ++k) {
-    const Effect& one = fit.model.effects[k];
-    if (is_motion(one.channel)) {
-      factors.push_back(one.coefficients.front());
-    } else {
-      effects.push_back(one);
-    }
-  }
-  if (factors.size() < 2 || scale == nullptr) return fit;
-  effects.push_back(catalogue_effect(scale->entry));
-  effects.back().coefficients = {median(factors)};
-  const std::optional<ModelFit> one = with_others(recordings, fit, std::move(effects));
-  if (!one || chi2_of_all(*one) - chi2_of_all(fit) > kWorthKeeping * noise_of(fit)) return fit;
-  return *one;
-}
-
-/// One wheel of another size is a ratio, a scale and a turning at once: one constant instead of
-/// them, where a fit with it does as well.
-std::optional<ModelFit> with_one_wheel(const std::vector<DrivenRecording>& recordings,
-                                       const ModelFit& fit, std::size_t first) {
-  std::vector<Effect> effects(fit.model.effects.begin(),
-                              fit.model.effects.begin() + static_cast<std::ptrdiff_t>(first));
-  double ratio = 0.0;
-  double motion = 0.0;
-  for (std::size_t k = first; k < fit.model.effects.size(); ++k) {
-    const Effect& one = fit.model.effects[k];
-    if (one.channel == Channel::difference) {
-      ratio = one.coefficients.front();
-    } else if (is_motion(one.channel)) {
-      motion += one.coefficients.front();
-    } else {
-      effects.push_back(one);
-    }
-  }
-  if (ratio == 0.0 || fit.model.effects.size() - effects.size() < 2) return std::nullopt;
-  const bool right = ratio * motion > 0.0;
-  effects.push_back({right ? "right wheel" : "left wheel",
-                     right ? Channel::right : Channel::left,
-                     {"1"},
-                     {right ? ratio : -ratio}});
-  std::optional<ModelFit> one = with_others(recordings, fit, std::move(effects));
-  if (!one || chi2_of_all(*one) - chi2_of_all(fit) > kWorthKeeping * noise_of(fit)) {
-    return std::nullopt;
-  }
-  return one;
-}
-
-/// With as few constants as do.
-ModelFit with_fewest(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
-                     std::size_t first) {
-  if (std::optional<ModelFit> one = with_one_wheel(recordings, fit, first)) return *std::move(one);
-  return with_wheel_scale(recordings, fit, first);
 }
 
 ModelFit surest_first(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
@@ -241,7 +153,7 @@ ModelFit surest_first(const std::vector<DrivenRecording>& recordings, const Mode
   std::vector<Effect> effects(fit.model.effects.begin(),
                               fit.model.effects.begin() + static_cast<std::ptrdiff_t>(first));
   for (auto& [strength, effect] : rated) effects.push_back(std::move(effect));
-  return with_others(recordings, fit, std::move(effects)).value_or(fit);
+  return refit_by(recordings, fit, std::move(effects)).value_or(fit);
 }
 
 /// Gross, or all that so few measurements can tell of.
@@ -258,15 +170,17 @@ double per_dof(const ModelFit& fit) {
   return chi2_of_all(fit) / std::max(1, fit.dof);
 }
 
-/// Those that the recordings surely show, where they matter.
+bool explains_much(const ModelFit& with, const ModelFit& given) {
+  return per_dof(with) <= kMostLeft * per_dof(given);
+}
+
+/// Those of a fit with all of them that the recordings surely show, where they matter.
 std::optional<ModelFit> those_that_matter(const std::vector<DrivenRecording>& recordings,
-                                          const ModelFit& given,
-                                          const std::vector<Effect>& constants,
-                                          std::optional<CalibratedStart>& start) {
+                                          const ModelFit& given, const ModelFit& all) {
   const std::size_t first = given.model.effects.size();
-  const std::optional<ModelFit> all = with_all(recordings, given, constants, start);
-  if (!all || !matters(*all, first)) return std::nullopt;
-  const std::optional<ModelFit> strong = strong_ones(recordings, *all, first);
+  // With fewer it explains no more.
+  if (!matters(all, first) || !explains_much(all, given)) return std::nullopt;
+  const std::optional<ModelFit> strong = strong_ones(recordings, all, first);
   if (!strong) return std::nullopt;
   ModelFit sure = sure_ones(recordings, *strong, first);
   if (!matters(sure, first)) return std::nullopt;
@@ -281,7 +195,9 @@ std::optional<ModelFit> those_without_gate(const std::vector<DrivenRecording>& r
                                            std::optional<CalibratedStart>& start) {
   ModelFit open = given;
   open.options.gate.reset();
-  std::optional<ModelFit> found = those_that_matter(recordings, open, constants, start);
+  const std::optional<ModelFit> all = with_all(recordings, open, constants, start);
+  if (!all) return std::nullopt;
+  std::optional<ModelFit> found = those_that_matter(recordings, open, *all);
   if (!found) return std::nullopt;
   found->options = given.options;
   return if_possible<ModelFit>([&] { return refit(recordings, found->model, *found); });
@@ -318,7 +234,7 @@ std::vector<LookAlike> look_alikes_at(const std::vector<DrivenRecording>& record
   weigh_by_fits(alike, effect, tests, [&](const Effect& one) {
     std::vector<Effect> effects = fit.model.effects;
     effects[place] = one;
-    return with_others(recordings, fit, std::move(effects));
+    return refit_by(recordings, fit, std::move(effects));
   });
   return alike;
 }
@@ -335,11 +251,14 @@ std::optional<GrossConstants> sure_constants(const std::vector<DrivenRecording>&
     constants = start->constants;
     for (Effect& one : constants) one.coefficients.clear();
   }
-  std::optional<ModelFit> sure = those_that_matter(recordings, given, constants, start);
-  if (given.options.gate && is_far_off(sure)) {
+  const std::optional<ModelFit> all = with_all(recordings, given, constants, start);
+  std::optional<ModelFit> sure;
+  if (all) sure = those_that_matter(recordings, given, *all);
+  const bool explained = all && per_dof(*all) < kLittleLeft;  // what the gate left out counted
+  if (given.options.gate && !explained && is_far_off(sure)) {
     sure = better_of(std::move(sure), those_without_gate(recordings, given, constants, start));
   }
-  if (!sure || per_dof(*sure) > kMostLeft * per_dof(given)) return std::nullopt;
+  if (!sure || !explains_much(*sure, given)) return std::nullopt;
   if (is_far_off(sure) && predicts_worse(recordings, given, *sure, legs)) return std::nullopt;
   return GrossConstants{surest_first(recordings, with_fewest(recordings, *sure, first), first),
                         first};
@@ -371,7 +290,7 @@ Finding finding_at(const std::vector<DrivenRecording>& recordings, const ModelFi
   result.dof = static_cast<int>(effect.shape.size());
   std::optional<ModelFit> lacking;
   if (!is_gross(effect)) lacking = without(recordings, fit, place);
-  const double scatter = noise_of(fit);
+  const double scatter = scatter_left(fit);
   const double score = lacking ? chi2_of_all(*lacking) - chi2_of_all(fit) : wald(fit, place);
   result.score = std::clamp(score, 0.0, most);
   result.p_value = result.p_adjusted = chi2_p_value(result.score / scatter, result.dof);

@@ -88,7 +88,8 @@ std::vector<NoiseLaw> of_drives(const FitState& fit, const ShapeContext& context
     const std::vector<Matrix4> none(problem.measurements.size(), Matrix4::Zero());
     result.push_back({law.name, law.unit, 0.0, law.margin, none});
   }
-  const Eigen::VectorXd offsets = offsets_of(fit);
+  const std::vector<std::vector<DrivePattern>> effects =
+      summed_patterns(fit.columns.border, offsets_of(fit), fit.recordings.size());
   context.prepare(ShapeContext::Instant::middle);
   parallel_for(problem.measurements.size(), [&](std::size_t k) {
     const Measurement& one = problem.measurements[k];
@@ -96,7 +97,7 @@ std::vector<NoiseLaw> of_drives(const FitState& fit, const ShapeContext& context
     const std::size_t session = idx(one.session);
     const std::vector<SegmentRow>& rows = problem.segments[one.source];
     const SegmentNoise segment = believed_noise(problem, k, fit.recordings, fit.model,
-                                                fit.columns.border, offsets, fit.adjustment.state);
+                                                effects[session], fit.adjustment.state);
     for (std::size_t row = 0; row < rows.size(); ++row) {
       for (std::size_t law = 0; law < laws.size(); ++law) {
         const Matrix3 Q = laws[law].row(session, rows[row]);

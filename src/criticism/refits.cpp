@@ -5,6 +5,8 @@
 #include "fit/fit_state.hpp"
 #include "trussmap/error.hpp"
 
+#include <utility>
+
 namespace trussmap {
 
 ModelFit refit_with(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
@@ -21,6 +23,13 @@ std::optional<ModelFit> if_fitted_with(const std::vector<DrivenRecording>& recor
   } catch (const SolveError&) {
     return std::nullopt;
   }
+}
+
+std::optional<ModelFit> refit_by(const std::vector<DrivenRecording>& recordings,
+                                 const ModelFit& fit, std::vector<Effect> effects) {
+  Model model = fit.model;
+  model.effects = std::move(effects);
+  return if_possible<ModelFit>([&] { return refit(recordings, model, fit); });
 }
 
 ModelFit refit_under(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,

@@ -23,6 +23,11 @@ namespace trussmap {
                                                      const ModelFit& fit,
                                                      const std::vector<Effect>& effects);
 
+/// With these effects, their coefficients as a start, in place of its own; nothing where they
+/// cannot be fitted together.
+[[nodiscard]] std::optional<ModelFit> refit_by(const std::vector<DrivenRecording>& recordings,
+                                               const ModelFit& fit, std::vector<Effect> effects);
+
 /// With this noise.
 [[nodiscard]] ModelFit refit_under(const std::vector<DrivenRecording>& recordings,
                                    const ModelFit& fit, const Noise& noise);

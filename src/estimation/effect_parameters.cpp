@@ -4,6 +4,8 @@
 
 #include "drive/row_motion.hpp"
 
+#include <algorithm>
+
 namespace trussmap {
 
 std::vector<int> unknown_coefficients(const EffectParameters& border) {
@@ -20,6 +22,30 @@ Eigen::VectorXd offsets_at(const EffectParameters& border, const Eigen::VectorXd
   for (std::size_t k = 0; k < border.size(); ++k) {
     const double value = border[k].held ? *border[k].held : unknown[next++];
     result[static_cast<Eigen::Index>(k)] = value - border[k].reference;
+  }
+  return result;
+}
+
+std::vector<DrivePattern> summed_patterns_of(const EffectParameters& border,
+                                             const Eigen::VectorXd& offsets, std::size_t session) {
+  std::vector<DrivePattern> sum;
+  for (std::size_t k = 0; k < border.size(); ++k) {
+    const double times = offsets[static_cast<Eigen::Index>(k)];
+    if (times == 0.0 || border[k].drives.empty()) continue;
+    const std::vector<DrivePattern>& rows = border[k].drives[session];
+    sum.resize(std::max(sum.size(), rows.size()));
+    for (std::size_t row = 0; row < rows.size(); ++row) sum[row].add(times, rows[row]);
+  }
+  return sum;
+}
+
+std::vector<std::vector<DrivePattern>> summed_patterns(const EffectParameters& border,
+                                                       const Eigen::VectorXd& offsets,
+                                                       std::size_t sessions) {
+  std::vector<std::vector<DrivePattern>> result;
+  result.reserve(sessions);
+  for (std::size_t session = 0; session < sessions; ++session) {
+    result.push_back(summed_patterns_of(border, offsets, session));
   }
   return result;
 }

@@ -48,6 +48,15 @@ using EffectParameters = std::vector<EffectPattern>;
 [[nodiscard]] Eigen::VectorXd offsets_at(const EffectParameters& border,
                                          const Eigen::VectorXd& unknown);
 
+/// What all coefficients together do to a session's rows; empty where they leave them as they are.
+[[nodiscard]] std::vector<DrivePattern> summed_patterns_of(const EffectParameters& border,
+                                                           const Eigen::VectorXd& offsets,
+                                                           std::size_t session);
+/// Of each session.
+[[nodiscard]] std::vector<std::vector<DrivePattern>> summed_patterns(const EffectParameters& border,
+                                                                     const Eigen::VectorXd& offsets,
+                                                                     std::size_t sessions);
+
 /// What each coefficient does to one session's rows, as segment_motion takes it; nullptr: nothing.
 [[nodiscard]] std::vector<const std::vector<DrivePattern>*> drive_patterns(
     const EffectParameters& border, std::size_t session);

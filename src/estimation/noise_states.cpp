@@ -279,7 +279,7 @@ ProcessLayer::ProcessLayer(const RecordingProblem& problem,
     : problem_(problem), recordings_(recordings), robot_(robot) {
   influences_.reserve(problem.segments.size());
   for (const std::vector<SegmentRow>& rows : problem.segments) {
-    influences_.push_back(row_influences(rows, {}, Eigen::VectorXd()));
+    influences_.push_back(row_influences(rows));
   }
 }
 

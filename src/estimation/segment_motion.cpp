@@ -79,6 +79,22 @@ int readings_of(const std::vector<SegmentRow>& rows) {
   return count;
 }
 
+SegmentRow with_effects(SegmentRow row, const std::vector<DrivePattern>& sum) {
+  if (sum.empty()) return row;
+  const DrivePattern& more = sum[row.row];
+  row.path += row.part * more.advance;
+  row.slip += row.part * more.slip;
+  row.turn += row.part * more.turn;
+  row.reading -= more.compass;
+  return row;
+}
+
+std::vector<SegmentRow> with_effects(std::vector<SegmentRow> rows,
+                                     const std::vector<DrivePattern>& sum) {
+  for (SegmentRow& row : rows) row = with_effects(row, sum);
+  return rows;
+}
+
 SegmentMotion segment_motion(const std::vector<SegmentRow>& rows) {
   return segment_motion(rows, {}, Eigen::VectorXd()).motion;
 }
@@ -123,9 +139,7 @@ SegmentWithEffects segment_motion(const std::vector<SegmentRow>& rows,
   return {{pose, mean.mean()}, slopes};
 }
 
-std::vector<Matrix4> row_influences(const std::vector<SegmentRow>& rows,
-                                    const std::vector<const std::vector<DrivePattern>*>& patterns,
-                                    const Eigen::VectorXd& coefficients) {
+std::vector<Matrix4> row_influences(const std::vector<SegmentRow>& rows) {
   std::vector<Matrix4> influences(rows.size(), Matrix4::Zero());
   std::vector<Vector2> ends(rows.size());
   Pose pose;
@@ -133,7 +147,7 @@ std::vector<Matrix4> row_influences(const std::vector<SegmentRow>& rows,
   int read = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const SegmentRow& row = rows[k];
-    const Step step = step_of(row, patterns, coefficients);
+    const Step step{row.path, row.slip, row.turn};
     const UnitArc arc = unit_arc(step.turn);
     const Matrix2 R = row.part * rotation(pose.heading);
     Matrix4& own = influences[k];

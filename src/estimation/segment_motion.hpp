@@ -79,7 +79,12 @@ struct SegmentMotion {
 /// Compass readings among the rows.
 [[nodiscard]] int readings_of(const std::vector<SegmentRow>& rows);
 
-/// The motion as recorded.
+/// A row as effects move it that do this together to the drive's rows (empty: nothing).
+[[nodiscard]] SegmentRow with_effects(SegmentRow row, const std::vector<DrivePattern>& sum);
+[[nodiscard]] std::vector<SegmentRow> with_effects(std::vector<SegmentRow> rows,
+                                                   const std::vector<DrivePattern>& sum);
+
+/// The motion as the rows have it.
 [[nodiscard]] SegmentMotion segment_motion(const std::vector<SegmentRow>& rows);
 
 /// The motion with effects: `patterns` per coefficient, per row of the drive (empty: no influence),
@@ -95,12 +100,8 @@ struct SegmentWithEffects {
     const Eigen::VectorXd& coefficients);
 
 /// What one unit of more motion in each row does to the segment's displacement (3) and mean
-/// innovation (1): per row a 4x4 whose columns are those of DrivePattern. The rows move as the
-/// patterns with these coefficients have it.
-[[nodiscard]] std::vector<Matrix4> row_influences(
-    const std::vector<SegmentRow>& rows,
-    const std::vector<const std::vector<DrivePattern>*>& patterns,
-    const Eigen::VectorXd& coefficients);
+/// innovation (1): per row a 4x4 whose columns are those of DrivePattern.
+[[nodiscard]] std::vector<Matrix4> row_influences(const std::vector<SegmentRow>& rows);
 
 /// Joint covariance of (d, a, m), in the frame of the start; fourth row and column zero without
 /// readings. Never below (10 micrometres)^2 and (10 microradians)^2, lest standing still be exact.

@@ -25,8 +25,7 @@ struct Path {
 };
 
 /// Lays the steps end to end; without readings the fourth number is 0.
-Path lay(const std::vector<SegmentRow>& rows, const std::vector<Pose>& steps,
-         const std::vector<double>& offsets) {
+Path lay(const std::vector<SegmentRow>& rows, const std::vector<Pose>& steps) {
   Path path;
   path.turned.reserve(rows.size());
   path.reached.reserve(rows.size());
@@ -41,7 +40,7 @@ Path lay(const std::vector<SegmentRow>& rows, const std::vector<Pose>& steps,
     heading += steps[k].heading;
     path.reached.push_back(place);
     if (std::isnan(rows[k].reading)) continue;
-    const double angle = rows[k].reading - offsets[k] - heading;
+    const double angle = rows[k].reading - heading;
     if (readings == 0) first = angle;
     sum += wrap_angle(angle - first);
     ++readings;
@@ -54,28 +53,22 @@ Path lay(const std::vector<SegmentRow>& rows, const std::vector<Pose>& steps,
 /// What the rows do each by itself, whatever the noise of the others.
 struct RowsAlone {
   std::vector<Pose> steps;
-  std::vector<double> offsets;  ///< of the readings, of which there are so many
   int readings = 0;
   std::vector<Matrix3> Q;
   Path recorded;
 };
 
 RowsAlone rows_alone(const MotionRows& drive, const std::vector<SegmentRow>& rows,
-                     const Robot& robot, const Noise& noise,
-                     const std::vector<const std::vector<DrivePattern>*>& patterns,
-                     const Eigen::VectorXd& offsets) {
+                     const Robot& robot, const Noise& noise) {
   RowsAlone alone;
   alone.readings = readings_of(rows);
+  alone.steps.reserve(rows.size());
+  alone.Q.reserve(rows.size());
   for (const SegmentRow& row : rows) {
-    const SegmentMotion motion = segment_motion({row}, patterns, offsets).motion;
-    alone.steps.push_back(motion.displacement);
-    alone.offsets.push_back(
-        std::isnan(row.reading)
-            ? 0.0
-            : wrap_angle(row.reading - motion.displacement.heading - motion.mean_heading));
+    alone.steps.push_back(displacement_of({row.path, row.slip, row.turn}));
     alone.Q.push_back(row_covariance(drive, row.row, row.part, row.duration, robot, noise));
   }
-  alone.recorded = lay(rows, alone.steps, alone.offsets);
+  alone.recorded = lay(rows, alone.steps);
   return alone;
 }
 
@@ -92,7 +85,7 @@ SegmentNoise noise_at(const std::vector<SegmentRow>& rows, const RowsAlone& alon
       steps[k].y += missing[k][1];
       steps[k].heading += missing[k][2];
     }
-    moved = lay(rows, steps, alone.offsets);
+    moved = lay(rows, steps);
   }
   const Path& path = moved ? *moved : alone.recorded;
   result.value = path.numbers;
@@ -122,10 +115,8 @@ SegmentNoise noise_at(const std::vector<SegmentRow>& rows, const RowsAlone& alon
 
 SegmentNoise segment_noise(const MotionRows& drive, const std::vector<SegmentRow>& rows,
                            const Robot& robot, const Noise& noise,
-                           const std::vector<const std::vector<DrivePattern>*>& patterns,
-                           const Eigen::VectorXd& offsets,
                            const std::vector<Eigen::Vector3d>& missing) {
-  RowsAlone alone = rows_alone(drive, rows, robot, noise, patterns, offsets);
+  RowsAlone alone = rows_alone(drive, rows, robot, noise);
   SegmentNoise result = noise_at(rows, alone, noise, missing);
   result.Q = std::move(alone.Q);
   return result;
@@ -164,24 +155,25 @@ SegmentNoise believed(const RecordingProblem& problem, std::size_t k,
 
 SegmentNoise believed_noise(const RecordingProblem& problem, std::size_t k,
                             const std::vector<DrivenRecording>& recordings, const Model& model,
-                            const EffectParameters& border, const Eigen::VectorXd& offsets,
-                            const RecordingState& state) {
+                            const std::vector<DrivePattern>& effects, const RecordingState& state) {
   const Measurement& one = problem.measurements[k];
-  const std::vector<SegmentRow>& rows = problem.segments[one.source];
+  const std::vector<SegmentRow> rows = with_effects(problem.segments[one.source], effects);
   const RowsAlone alone =
-      rows_alone(recordings[idx(one.session)].drive, rows, model.robot, model.noise,
-                 drive_patterns(border, idx(one.session)), offsets);
+      rows_alone(recordings[idx(one.session)].drive, rows, model.robot, model.noise);
   return believed(problem, k, rows, alone, model.noise, state);
 }
 
 double relinearise(RecordingProblem& problem, const std::vector<DrivenRecording>& recordings,
                    const Model& model, const EffectParameters& border,
                    const Eigen::VectorXd& offsets, const RecordingState& state) {
+  const std::vector<std::vector<DrivePattern>> effects =
+      summed_patterns(border, offsets, recordings.size());
   std::vector<double> changes(problem.measurements.size(), 0.0);
   parallel_for(problem.measurements.size(), [&](std::size_t k) {
     Measurement& one = problem.measurements[k];
     if (!is_segment(one)) return;
-    const SegmentNoise at = believed_noise(problem, k, recordings, model, border, offsets, state);
+    const SegmentNoise at =
+        believed_noise(problem, k, recordings, model, effects[idx(one.session)], state);
     const Matrix4 within = problem.within.empty() ? Matrix4(Matrix4::Zero()) : problem.within[k];
     Vector4 value_offset = at.value - at.recorded;
     value_offset[3] = one.rows == 4 ? wrap_angle(value_offset[3]) : 0.0;

@@ -35,19 +35,19 @@ struct SegmentNoise {
   std::vector<Matrix3> Q;                      ///< per row
 };
 
-/// `missing` holds n_k per row, or nothing for n = 0; `patterns` and `offsets` as in
-/// segment_motion. C never falls below (10 micrometres)^2 and (10 microradians)^2, lest standing
-/// still be exact.
-[[nodiscard]] SegmentNoise segment_noise(
-    const MotionRows& drive, const std::vector<SegmentRow>& rows, const Robot& robot,
-    const Noise& noise, const std::vector<const std::vector<DrivePattern>*>& patterns,
-    const Eigen::VectorXd& offsets, const std::vector<Eigen::Vector3d>& missing);
+/// `rows`: as effects move them; `missing` holds n_k per row, or nothing for n = 0. C never falls
+/// below (10 micrometres)^2 and (10 microradians)^2, lest standing still be exact.
+[[nodiscard]] SegmentNoise segment_noise(const MotionRows& drive,
+                                         const std::vector<SegmentRow>& rows, const Robot& robot,
+                                         const Noise& noise,
+                                         const std::vector<Eigen::Vector3d>& missing);
 
 /// The noise of a problem's k-th measurement, a segment, at the n that the state believes.
+/// `effects`: what they do together to its session's rows.
 [[nodiscard]] SegmentNoise believed_noise(const RecordingProblem& problem, std::size_t k,
                                           const std::vector<DrivenRecording>& recordings,
-                                          const Model& model, const EffectParameters& border,
-                                          const Eigen::VectorXd& offsets,
+                                          const Model& model,
+                                          const std::vector<DrivePattern>& effects,
                                           const RecordingState& state);
 
 /// Takes all segments' noise where the state believes it: changes their `bend` and whitener.

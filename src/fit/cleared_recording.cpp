@@ -24,21 +24,8 @@ ClearedRecording as_recorded(const DrivenRecording& recording) {
   return result;
 }
 
-/// Sum of the effects' patterns for one row of a drive.
-DrivePattern sum_at(const EffectParameters& border, const Eigen::VectorXd& offsets,
-                    std::size_t session, std::size_t row) {
-  DrivePattern sum;
-  for (std::size_t k = 0; k < border.size(); ++k) {
-    const auto& drives = border[k].drives;
-    if (drives.empty() || drives[session].empty()) continue;
-    sum.add(offsets[static_cast<Eigen::Index>(k)], drives[session][row]);
-  }
-  return sum;
-}
-
-void clear_drive(const DrivenRecording& recorded, const EffectParameters& border,
-                 const Eigen::VectorXd& offsets, std::size_t session, const Robot& robot,
-                 ClearedRecording& result) {
+void clear_drive(const DrivenRecording& recorded, const std::vector<DrivePattern>& effects,
+                 const Robot& robot, ClearedRecording& result) {
   const MotionRows& drive = recorded.drive;
   MotionRows& clear = result.recording.drive;
   clear.forward = drive.forward;
@@ -46,7 +33,7 @@ void clear_drive(const DrivenRecording& recorded, const EffectParameters& border
   clear.pair = drive.pair;
   result.slip.assign(drive.rows(), 0.0);
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const DrivePattern more = sum_at(border, offsets, session, row);
+    const DrivePattern more = effects.empty() ? DrivePattern() : effects[row];
     add_motion(clear, row, {more.advance, 0.0, more.turn}, robot);
     result.slip[row] = more.slip;
     if (!drive.gyro.empty()) clear.gyro[row].excess = drive.gyro[row].excess + more.excess;
@@ -79,7 +66,7 @@ void clear(const std::vector<DrivenRecording>& timed, const EffectParameters& bo
            const Eigen::VectorXd& offsets, const Robot& robot,
            std::vector<ClearedRecording>& result) {
   for (std::size_t s = 0; s < timed.size(); ++s) {
-    clear_drive(timed[s], border, offsets, s, robot, result[s]);
+    clear_drive(timed[s], summed_patterns_of(border, offsets, s), robot, result[s]);
     clear_sightings(timed[s], border, offsets, static_cast<int>(s), robot, result[s]);
   }
 }

@@ -73,7 +73,7 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
   segment_rows_->reserve(count);
   struct Driven {
     const std::vector<SegmentRow>* rows;
-    std::vector<const std::vector<DrivePattern>*> patterns;
+    std::size_t session;
     std::size_t first;
   };
   std::vector<Driven> driven;
@@ -81,16 +81,12 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
     const Measurement& one = problem.measurements[k];
     const Matrix4 W = std::sqrt(weights[k] * tail_information(one.tails, one.rows)) * one.whitener;
     if (is_segment(one)) {
-      std::vector<const std::vector<DrivePattern>*> patterns;
-      for (const EffectPattern& effect : border) {
-        patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(one.session)]);
-      }
       const std::vector<SegmentRow>& rows = problem.segments[one.source];
       const std::size_t first = segment_rows_->size();
       segments_.push_back(
           {rows_, one.rows, idx(one.session), first, first + rows.size(), 0, 0, false, -W});
       segment_rows_->resize(first + rows.size());
-      driven.push_back({&rows, std::move(patterns), first});
+      driven.push_back({&rows, idx(one.session), first});
     } else if (is_driven(one)) {
       add_gyro(problem, one, W);
     } else if (one.session >= 0 && !is_tie(one)) {
@@ -102,9 +98,12 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
     rows_ += one.rows;
   }
   rows_ += static_cast<int>(problem.noise_states.size());
+  const std::vector<std::vector<DrivePattern>> effects =
+      summed_patterns(border, offsets, context.recordings().size());
   parallel_for(driven.size(), [&](std::size_t k) {
     const Driven& one = driven[k];
-    const std::vector<Matrix4> influences = row_influences(*one.rows, one.patterns, offsets);
+    const std::vector<Matrix4> influences =
+        row_influences(with_effects(*one.rows, effects[one.session]));
     for (std::size_t row = 0; row < influences.size(); ++row) {
       const Matrix4& I = influences[row];
       (*segment_rows_)[one.first + row] = {(*one.rows)[row].row,

@@ -4,10 +4,12 @@
 
 #include "drive/body_motion.hpp"
 #include "drive/row_variables.hpp"
+#include "odometry/row_reckoner.hpp"
 #include "parallel/parallel_for.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -17,30 +19,24 @@ namespace {
 /// One session's rows under the effects.
 class Reckoner {
  public:
-  Reckoner(const MotionRows& drive, const EffectParameters& border, const Eigen::VectorXd& offsets,
-           int session)
-      : drive_(drive), border_(border), offsets_(offsets), session_(idx(session)) {}
+  Reckoner(const MotionRows& drive, std::vector<DrivePattern> effects)
+      : drive_(drive), effects_(std::move(effects)) {}
 
   /// Motion over part of the drive, in the frame of its start.
   [[nodiscard]] Pose motion(double from, double to) const {
-    return motion(segment_rows(drive_, from, to));
+    return segment_motion(moved(segment_rows(drive_, from, to))).displacement;
   }
-  [[nodiscard]] Pose motion(const std::vector<SegmentRow>& rows) const {
-    return segment_motion(rows, patterns(), offsets_).motion.displacement;
+  [[nodiscard]] Pose motion(const SegmentRow& row) const {
+    const SegmentRow moved = with_effects(row, effects_);
+    return displacement_of({moved.path, moved.slip, moved.turn});
   }
-  [[nodiscard]] std::vector<Matrix4> influences(const std::vector<SegmentRow>& rows) const {
-    return row_influences(rows, patterns(), offsets_);
+  [[nodiscard]] std::vector<SegmentRow> moved(const std::vector<SegmentRow>& rows) const {
+    return with_effects(rows, effects_);
   }
 
  private:
-  [[nodiscard]] std::vector<const std::vector<DrivePattern>*> patterns() const {
-    return drive_patterns(border_, session_);
-  }
-
   const MotionRows& drive_;
-  const EffectParameters& border_;
-  const Eigen::VectorXd& offsets_;
-  std::size_t session_;
+  std::vector<DrivePattern> effects_;  ///< all of them together
 };
 
 /// Travel and turn that each row lacks, as white noise of the wheels would have it that adds up to
@@ -50,6 +46,9 @@ std::vector<Vector2> estimated_noise(const std::vector<SegmentRow>& rows, const 
                                      const Robot& robot, const std::vector<Matrix4>& influences,
                                      const Eigen::Vector3d& lacking) {
   constexpr double kLeastShare = 1e-6;  // m: rows at rest may err too
+  // Beside what wheels do: a wheel that hardly turns would have to turn again and again to bring a
+  // resting robot sideways.
+  constexpr double kSlip = 1e-6;
   using Influence = Eigen::Matrix<double, 3, 2>;
   std::vector<Influence> spread(rows.size());
   Matrix3 total = Matrix3::Zero();
@@ -71,8 +70,7 @@ std::vector<Vector2> estimated_noise(const std::vector<SegmentRow>& rows, const 
     spread[k] = A * Q;
     total += spread[k] * A.transpose();
   }
-  const double size = total.trace();
-  total.diagonal().array() += 1e-12 * size;
+  total.diagonal().array() += kSlip;
   const Eigen::Vector3d pull = total.ldlt().solve(lacking);
   std::vector<Vector2> noise;
   noise.reserve(rows.size());
@@ -96,11 +94,12 @@ std::vector<FittedRow> rows_between(const MotionRows& drive, const Robot& robot,
   const Pose wanted = relative(at_from, at_to);
   std::vector<Vector2> missing(rows.size(), Vector2::Zero());
   for (int round = 0; round < kRounds; ++round) {
-    const Pose reached = reckoner.motion(rows);
+    const std::vector<SegmentRow> moved = reckoner.moved(rows);
+    const Pose reached = segment_motion(moved).displacement;
     const Eigen::Vector3d lacking(wanted.x - reached.x, wanted.y - reached.y,
                                   wrap_angle(wanted.heading - reached.heading));
     const std::vector<Vector2> noise =
-        estimated_noise(rows, drive, robot, reckoner.influences(rows), lacking);
+        estimated_noise(rows, drive, robot, row_influences(moved), lacking);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const Vector2 own = rows[k].part * noise[k];
       rows[k].path += own[0];
@@ -111,7 +110,7 @@ std::vector<FittedRow> rows_between(const MotionRows& drive, const Robot& robot,
   Pose pose = at_from;
   std::vector<Pose> reached;
   for (const SegmentRow& row : rows) {
-    pose = compose(pose, reckoner.motion(std::vector<SegmentRow>{row}));
+    pose = compose(pose, reckoner.motion(row));
     reached.push_back(pose);
   }
   // What a wheel cannot have done (a slip sideways while standing) is spread evenly.
@@ -131,18 +130,12 @@ std::vector<FittedRow> rows_between(const MotionRows& drive, const Robot& robot,
 }
 
 /// Per row; empty without a gyro.
-std::vector<double> excesses(const MotionRows& drive,
-                             const std::vector<const std::vector<DrivePattern>*>& patterns,
-                             const Eigen::VectorXd& offsets) {
+std::vector<double> excesses(const MotionRows& drive, const std::vector<DrivePattern>& effects) {
   std::vector<double> result;
   result.reserve(drive.gyro.size());
   for (const GyroShare& one : drive.gyro) result.push_back(one.excess);
-  for (std::size_t k = 0; k < patterns.size(); ++k) {
-    if (patterns[k] == nullptr || patterns[k]->empty()) continue;
-    const double a = offsets[static_cast<Eigen::Index>(k)];
-    for (std::size_t row = 0; row < result.size(); ++row) {
-      result[row] += a * (*patterns[k])[row].excess;
-    }
+  for (std::size_t row = 0; row < std::min(result.size(), effects.size()); ++row) {
+    result[row] += effects[row].excess;
   }
   return result;
 }
@@ -173,17 +166,18 @@ std::vector<SessionPath> fitted_paths(const std::vector<DrivenRecording>& record
   }
   for (std::size_t s = 0; s < recordings.size(); ++s) {
     const MotionRows& drive = recordings[s].drive;
-    const Reckoner reckoner(drive, border, offsets, static_cast<int>(s));
+    std::vector<DrivePattern> effects = summed_patterns_of(border, offsets, s);
     SessionPath& path = paths[s];
     path.ends.resize(drive.rows());
     path.missing.assign(drive.rows(), Vector2::Zero());
-    path.excess = excesses(drive, drive_patterns(border, s), offsets);
+    path.excess = excesses(drive, effects);
+    const Reckoner reckoner(drive, std::move(effects));
     if (first[s] < 0) continue;
     const PoseNode& first_node = problem.poses[idx(first[s])];
     path.start = before(state.poses[idx(first[s])], reckoner.motion(drive.start(), first_node.t));
     Pose pose = path.start;
     for (const SegmentRow& row : segment_rows(drive, drive.start(), first_node.t)) {
-      pose = compose(pose, reckoner.motion(std::vector<SegmentRow>{row}));
+      pose = compose(pose, reckoner.motion(row));
       path.ends[row.row] = pose;
     }
     std::vector<std::vector<FittedRow>> between(idx(last[s] - first[s]));
@@ -201,7 +195,7 @@ std::vector<SessionPath> fitted_paths(const std::vector<DrivenRecording>& record
     pose = state.poses[idx(last[s])];
     for (const SegmentRow& row :
          segment_rows(drive, problem.poses[idx(last[s])].t, drive.t.back())) {
-      pose = compose(pose, reckoner.motion(std::vector<SegmentRow>{row}));
+      pose = compose(pose, reckoner.motion(row));
       path.ends[row.row] = pose;
     }
   }

@@ -44,7 +44,7 @@ double white_square(const Window& window, const Noise& noise,
 
 double process_square(const Window& window, const NoiseProcess& process) {
   if (acts_on(process.channel) != ActsOn::drives) return 0.0;
-  const std::vector<Matrix4> influences = row_influences(window.rows, {}, Eigen::VectorXd());
+  const std::vector<Matrix4> influences = row_influences(window.rows);
   const std::vector<Vector4> c =
       unit_columns(window.drive, window.rows, influences, process.channel, window.robot);
   Matrix4 unit = Matrix4::Zero();

@@ -83,13 +83,14 @@ NoiseReml::NoiseReml(const FitState& fit, const Noise& stated)
       left_out_(fit.problem.measurements.size(), false),
       scatter_(fit) {
   for (const int k : fit.adjustment.left_out) left_out_[idx(k)] = true;
-  const Eigen::VectorXd offsets = offsets_of(fit);
+  const std::vector<std::vector<DrivePattern>> effects =
+      summed_patterns(fit.columns.border, offsets_of(fit), fit.recordings.size());
   rows_.resize(problem_.segments.size());
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
     if (!is_segment(one)) continue;
-    rows_[one.source] = {believed_noise(problem_, k, fit.recordings, fit.model, fit.columns.border,
-                                        offsets, fit.adjustment.state)
+    rows_[one.source] = {believed_noise(problem_, k, fit.recordings, fit.model,
+                                        effects[idx(one.session)], fit.adjustment.state)
                              .H,
                          readings_of(problem_.segments[one.source])};
   }

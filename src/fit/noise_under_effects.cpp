@@ -60,6 +60,8 @@ RowNoise noise_in(const SessionPath& path, std::size_t row) {
 RowNoise stepped(const RowNoise& before, const RowNoise& found, const Matrix3& growth) {
   // What an effect adds is missing less, but adds to the excess.
   const Matrix3 less = Eigen::Vector3d(1.0, 1.0, -1.0).asDiagonal() * growth;
+  const Matrix3 factor = Matrix3::Identity() + less;
+  if (factor.diagonal().minCoeff() < 0.0 || factor.determinant() < 0.0) return RowNoise::Zero();
   if (!(less.trace() > 0.0)) return found;
   const Matrix3 step = Matrix3::Identity() + 0.5 * less;
   return before + step.inverse() * (found - before);

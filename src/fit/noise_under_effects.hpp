@@ -12,8 +12,9 @@
 //
 //   m <- m_before + ((1 + F)/2)^-1 (m_found - m_before)
 //
-// leaves (F - 1)/(F + 1) of the error of both. Where F is below 1, m is taken as it is found. With
-// a gyro the same of noise and excess together.
+// leaves (F - 1)/(F + 1) of the error of both. Where F is below 1, m is taken as it is found; where
+// it is negative, as where wheels are exchanged, no step serves both, and m is left out of the
+// columns: noise comes after the effect there. With a gyro the same of noise and excess together.
 #pragma once
 
 #include "fit/fit_state.hpp"

@@ -28,7 +28,8 @@ bool shows_in_readings(const NoiseProcess& process) {
 }
 
 ReadingScatter::ReadingScatter(const FitState& fit) {
-  const Eigen::VectorXd offsets = offsets_of(fit);
+  const std::vector<std::vector<DrivePattern>> effects =
+      summed_patterns(fit.columns.border, offsets_of(fit), fit.recordings.size());
   Noise wheels_alone;
   wheels_alone.left = fit.model.noise.left;
   wheels_alone.right = fit.model.noise.right;
@@ -40,7 +41,6 @@ ReadingScatter::ReadingScatter(const FitState& fit) {
     const std::size_t session = idx(one.session);
     const MotionRows& drive = fit.recordings[session].drive;
     if (!drive.gyro.empty() || !drive.wheels.empty()) continue;  // turns are not the wheels' alone
-    const auto patterns = drive_patterns(fit.columns.border, session);
     const double start =
         fit.adjustment.state.poses[idx(one.from - fit.problem.landmark_count())].heading;
     std::vector<Row> result;
@@ -48,8 +48,8 @@ ReadingScatter::ReadingScatter(const FitState& fit) {
     double turned = 0.0;
     double first = kAbsent;
     for (const SegmentRow& row : rows) {
-      const SegmentMotion motion = segment_motion({row}, patterns, offsets).motion;
-      turned += motion.displacement.heading;
+      const SegmentRow moved = with_effects(row, effects[session]);
+      turned += moved.turn;
       const Robot& robot = fit.model.robot;
       const WheelTravel travel = row.part * noisy_travel(drive, row.row, robot);
       Row next;
@@ -57,9 +57,7 @@ ReadingScatter::ReadingScatter(const FitState& fit) {
       next.way = std::abs(row.path);
       next.turn = std::abs(row.turn);
       next.wheels = arc_covariance(travel, row.duration, robot, wheels_alone)(2, 2);
-      // The row's own mean heading is its reading less its turn.
-      next.y = std::isnan(row.reading) ? kAbsent
-                                       : motion.mean_heading + motion.displacement.heading - turned;
+      next.y = moved.reading - turned;  // of a row without one NaN
       if (!std::isnan(next.y)) {
         if (std::isnan(first)) first = next.y;
         next.y = wrap_angle(next.y - first);

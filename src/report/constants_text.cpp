@@ -98,8 +98,9 @@ std::string constants_text(const RobotConstants& constants, TextStyle style) {
     const QuantityText now = quantity_text(one.after, one.sd);
     table.rows.push_back(
         {toml_key(one.name), "= " + now.value,
-         fmt::format("# {}was {:.6g}; {}", now.error.empty() ? "" : "+- " + now.error + ", ",
-                     one.before, meaning(one))});
+         fmt::format("# {}{}{}", now.error.empty() ? "" : "+- " + now.error + ", ",
+                     std::isfinite(one.before) ? fmt::format("was {:.6g}; ", one.before) : "",
+                     meaning(one))});
   }
   std::string text = "\nConstants to paste (TOML)\n" + table_text(table, style) + missing;
   if (!constants.others.empty()) text += "  # " + stays_in_the_model(constants.others) + "\n";

@@ -45,6 +45,23 @@ std::string look_alikes_text(const std::vector<LookAlike>& all) {
   return same + apart;
 }
 
+/// Where all sets of effects are weighed and most that is likely does without it.
+std::string weakness_text(const Finding& one, const Explanations& explanations) {
+  constexpr double kWeak = 0.5;
+  if (explanations.sets.empty() || one.joint.empty()) return "";
+  double chance = 0.0;
+  for (const EffectChance& other : explanations.effects) {
+    const bool is_it = other.effect.name == one.effect.name ||
+                       std::ranges::count(other.otherwise, one.effect.name) > 0;
+    if (is_it) chance = std::max(chance, other.probability);
+  }
+  if (chance >= kWeak) return "";
+  return fmt::format(
+      "  weak evidence: more than chance, but other sets of effects do as well (its probability: "
+      "{:.2f})\n",
+      chance);
+}
+
 std::string missing_text(const Diagnosis& result, TextStyle style) {
   std::string text;
   if (result.verdict != Diagnosis::Verdict::missing) {
@@ -59,6 +76,7 @@ std::string missing_text(const Diagnosis& result, TextStyle style) {
     const Explanation explained = explanation_of(one.effect);
     if (explained.unusual) text += fmt::format("  not its usual sign: {}\n", explained.does);
     text += look_alikes_text(one.look_alikes);
+    text += weakness_text(one, result.explanations);
   }
   if (const std::string by = in_words(result.sightings);
       result.verdict == Diagnosis::Verdict::missing && !by.empty()) {
@@ -122,7 +140,8 @@ std::string candidates_text(const Diagnosis& result, std::size_t count, TextStyl
         {shortened(one.effect.name, kWidestCell), shortened(formula_of(one.effect), kWidestCell),
          fmt::format("{:.1f} ({})", one.score, one.dof),
          beside ? "with the above" : probability_text(one.p_adjusted),
-         fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), std::string(status_in_words(one))});
+         result.held_out.legs.empty() ? "-" : fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms),
+         std::string(status_in_words(one))});
   }
   text +=
       fmt::format("\n{}; {} tests\n{}", fit_in_words(result.chi2, result.dof, result.coefficients),

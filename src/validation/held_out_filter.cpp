@@ -23,12 +23,8 @@ void HeldOutFilter::start(int node, const Pose& pose) {
 
 FilterStep HeldOutFilter::drive(std::size_t k) {
   const Measurement& segment = problem_.measurements[k];
-  std::vector<const std::vector<DrivePattern>*> patterns;
-  for (const EffectPattern& effect : border_) {
-    patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(segment.session)]);
-  }
-  const SegmentMotion motion =
-      segment_motion(problem_.segments[segment.source], patterns, offsets_).motion;
+  const SegmentMotion motion = segment_motion(
+      with_effects(problem_.segments[segment.source], effects_[idx(segment.session)]));
   Matrix4 W = segment.whitener;
   for (int row = segment.rows; row < 4; ++row) W(row, row) = 1.0;
   const Matrix4 inverse = W.inverse();

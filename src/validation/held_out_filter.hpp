@@ -33,7 +33,8 @@ class HeldOutFilter {
                 const Eigen::VectorXd& offsets, const RecordingState& map,
                 const std::vector<Matrix2>& map_covariances,
                 const std::vector<double>& orientation_variances)
-      : problem_(problem),
+      : effects_(summed_patterns(border, offsets, problem.sessions.size())),
+        problem_(problem),
         border_(border),
         offsets_(offsets),
         state_(map),
@@ -59,6 +60,7 @@ class HeldOutFilter {
   [[nodiscard]] bool is_known(int node) const;
   Pose& at(int node) { return state_.poses[idx(node - problem_.landmark_count())]; }
 
+  std::vector<std::vector<DrivePattern>> effects_;  ///< of each session, together
   const RecordingProblem& problem_;
   const EffectParameters& border_;
   const Eigen::VectorXd& offsets_;

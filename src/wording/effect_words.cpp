@@ -181,6 +181,23 @@ struct Share {
   double slope = 1.0;
 };
 
+/// Of a factor 1 + g below zero, which no size of a wheel is; empty where it is one.
+std::string_view wrong_sign_in_words(Channel channel, double g) {
+  if (g >= -1.0) return "";
+  switch (channel) {
+    case Channel::turn:
+      return "the robot turns the other way round than its wheels say: left and right exchanged?";
+    case Channel::left:
+      return "the left wheel counts backwards: the sign of its ticks?";
+    case Channel::right:
+      return "the right wheel counts backwards: the sign of its ticks?";
+    case Channel::wheels:
+      return "all wheels count backwards: the sign of their ticks?";
+    default:
+      return "";
+  }
+}
+
 Share wheelbase_share(double turn) {
   const double ratio = 1.0 / (1.0 + turn);
   return {ratio - 1.0, ratio * ratio};
@@ -202,6 +219,10 @@ std::string size_in_words(const Effect& effect, double least, double most) {
   const double extreme = std::abs(least) > std::abs(most) ? least : most;
   const double other = extreme == least ? most : least;
   const bool both = extreme * other < 0.0 && std::abs(other) > 0.3 * std::abs(extreme);
+  if (is_plain_factor(effect)) {
+    const std::string_view words = wrong_sign_in_words(channel, extreme);
+    if (!words.empty()) return std::string(words);
+  }
   if (is_plain_factor(effect) && channel == Channel::turn) {
     const double larger = wheelbase_share(extreme).larger;
     return fmt::format("the wheelbase is {} % {} than nominal",
@@ -242,6 +263,8 @@ std::string in_words(const Effect& effect, const std::vector<double>& sd) {
   if (is_plain_factor(effect)) {
     const double value = effect.coefficients[0];
     const std::string hint = everyday_factor_in_words(channel, value, sd[0]);
+    const std::string_view wrong = wrong_sign_in_words(channel, value);
+    if (!wrong.empty()) return fmt::format("{} (g = {})", wrong, with_error(value, sd[0], ""));
     if (channel == Channel::turn) {
       const Share share = wheelbase_share(value);
       return fmt::format(

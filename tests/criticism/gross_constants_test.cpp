@@ -12,6 +12,7 @@
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/simulated_recording.hpp"
+#include "trussmap/wording.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -93,6 +94,57 @@ TEST(SlowGrossConstants, TurningThreeTimesAsMuchAsStatedIsAWheelbase) {
   ASSERT_TRUE(found);
   EXPECT_EQ(names_in(*found), std::vector<std::string>{"wheelbase"});
   EXPECT_NEAR(found->fit.model.effects.back().coefficients.at(0), 2.0, 0.03);
+}
+
+TEST(SlowGrossConstants, TwoWheelsOfOtherSizesAreNamedEach) {
+  const SimulatedRecording one =
+      simulate(small_world(36), {Effect{"left", Channel::left, {"1"}, {-0.28}},
+                                 Effect{"right", Channel::right, {"1"}, {0.12}}});
+  const auto found =
+      gross_constants({testing::driven(one.drive.recording)}, given(one), LegOptions{});
+  ASSERT_TRUE(found);
+  const std::vector<EffectEstimate>& all = found->fit.effects;
+  ASSERT_EQ(all.size(), 2U);
+  for (const EffectEstimate& wheel : all) {
+    const bool left = wheel.effect.channel == Channel::left;
+    EXPECT_EQ(wheel.effect.name, left ? "left wheel" : "right wheel");
+    EXPECT_NEAR(wheel.effect.coefficients.at(0), left ? -0.28 : 0.12, 4.0 * wheel.sd.at(0));
+  }
+}
+
+struct WrongSign {
+  void (*spoil)(Drive&);
+  const char* name;
+  const char* words;
+};
+
+void negate(std::vector<double>& column) {
+  for (double& one : column) one = -one;
+}
+
+TEST(SlowGrossConstants, AWrongSignIsSaidToBeOne) {
+  for (const WrongSign& wrong :
+       {WrongSign{[](Drive& drive) { std::swap(drive.left, drive.right); }, "wheelbase",
+                  "left and right exchanged"},
+        WrongSign{[](Drive& drive) { negate(drive.left); }, "left wheel", "left wheel counts back"},
+        WrongSign{[](Drive& drive) { negate(drive.right); }, "right wheel",
+                  "right wheel counts back"},
+        WrongSign{[](Drive& drive) { negate(drive.left), negate(drive.right); }, "wheel scale",
+                  "all wheels count back"}}) {
+    SimulatedRecording one = simulate(small_world(34), {});
+    const ModelFit right = given(one);
+    wrong.spoil(one.drive.recording.drive);
+    const auto found =
+        gross_constants({testing::driven(one.drive.recording)}, given(one), LegOptions{});
+    ASSERT_TRUE(found) << wrong.name;
+    EXPECT_EQ(names_in(*found), std::vector<std::string>{wrong.name});
+    const EffectEstimate& size = found->fit.effects.back();
+    EXPECT_NEAR(size.effect.coefficients.at(0), -2.0, 4.0 * size.sd.at(0)) << wrong.name;
+    EXPECT_LT(size.sd.at(0), 0.01);
+    // The same drive, but for one coefficient more.
+    EXPECT_NEAR(found->fit.chi2, right.chi2, 0.05 * right.chi2) << wrong.name;
+    EXPECT_NE(in_words(size.effect, size.sd).find(wrong.words), std::string::npos);
+  }
 }
 
 TEST(SlowGrossConstants, AnErrorOfAnotherKindIsFittedByItself) {
@@ -216,7 +268,8 @@ TEST(SlowReports, AreToldTheConstantThatIsWrong) {
         Report{"turns-1.4", "wheelbase", 1.0 / 1.4 - 1.0},
         Report{"four-marks-scale", "travel scale", 1.0 / 0.7 - 1.0},
         Report{"dead-wheels", "wheelbase", 12.0 / 13.625 - 1.0},
-        Report{"ten-spins", "wheelbase", 0.0061}}) {
+        Report{"ten-spins", "wheelbase", 0.0061},
+        Report{"wheels-exchanged-ranges", "wheelbase", -2.0}}) {
     const std::filesystem::path folder = testing::shared("data/reports") / report.folder;
     const Model model = read_model(folder / "model.toml");
     const FitOptions fit = gated_fit();

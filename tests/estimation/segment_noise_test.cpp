@@ -47,7 +47,7 @@ Segment example(bool compass) {
 }
 
 SegmentNoise noise_of(const Segment& segment, const std::vector<Vector3>& missing) {
-  return segment_noise(segment.drive, segment.rows, kRobot, Noise(), {}, {}, missing);
+  return segment_noise(segment.drive, segment.rows, kRobot, Noise(), missing);
 }
 
 std::vector<Vector3> some_noise(std::size_t rows, std::uint64_t seed, double size) {
@@ -149,7 +149,7 @@ TEST(SegmentNoise, LinearisedWhereTheNoiseIsItIsUnbiasedAsTheRecordIsNot) {
   Noise noise;
   noise.left = noise.right = 0.005;
   const auto at = [&](const std::vector<Vector3>& missing) {
-    return segment_noise(segment.drive, segment.rows, kRobot, noise, {}, {}, missing);
+    return segment_noise(segment.drive, segment.rows, kRobot, noise, missing);
   };
   const SegmentNoise recorded = at({});
   std::vector<Matrix3> roots;

@@ -84,6 +84,14 @@ TEST(EffectWords, AGrossConstantIsSaidInTheOwnersFigures) {
             "the right wheel is 66.7 +- 1.6 % larger than the left");
 }
 
+TEST(EffectWords, NoWheelbaseTurnsTheOtherWayRound) {
+  const std::string words = in_words(catalogue_effect("wheelbase", {-2.0}), {0.002});
+  EXPECT_NE(words.find("left and right exchanged"), std::string::npos);
+  EXPECT_EQ(words.find("%"), std::string::npos);
+  EXPECT_EQ(size_in_words(catalogue_effect("wheelbase", {-2.0}), -2.0, -2.0).find("%"),
+            std::string::npos);
+}
+
 TEST(EffectWords, AFactorOfEverydayIsSaidToBeOne) {
   EXPECT_TRUE(in_words(catalogue_effect("travel scale", {1.004}), {0.001})
                   .ends_with("(twice: a radius taken for a diameter, or a gear?)"));

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/fewest_constants.hpp"
+
+#include "criticism/calibrated_start.hpp"
+#include "criticism/candidates.hpp"
+#include "criticism/effect_strength.hpp"
+#include "criticism/refits.hpp"
+#include "statistics/median.hpp"
+#include "trussmap/catalogue.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+bool is_motion(Channel channel) {
+  return channel == Channel::travel || channel == Channel::turn || channel == Channel::sideways;
+}
+
+/// Larger wheels make all that is driven larger alike: one constant instead of two or three.
+ModelFit with_wheel_scale(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
+                          std::size_t first) {
+  const CatalogueRecord* scale = find_record("wheel scale");
+  std::vector<Effect> effects(fit.model.effects.begin(),
+                              fit.model.effects.begin() + static_cast<std::ptrdiff_t>(first));
+  std::vector<double> factors;
+  for (std::size_t k = first; k < fit.model.effects.size(); ++k) {
+    const Effect& one = fit.model.effects[k];
+    if (is_motion(one.channel)) {
+      factors.push_back(one.coefficients.front());
+    } else {
+      effects.push_back(one);
+    }
+  }
+  if (factors.size() < 2 || scale == nullptr) return fit;
+  effects.push_back(catalogue_effect(scale->entry));
+  effects.back().coefficients = {median(factors)};
+  const std::optional<ModelFit> one = refit_by(recordings, fit, std::move(effects));
+  if (!one || !does_as_well(*one, fit)) return fit;
+  return *one;
+}
+
+/// One wheel of another size is a ratio, a scale and a turning at once: one constant instead of
+/// them, where a fit with it does as well.
+std::optional<ModelFit> with_one_wheel(const std::vector<DrivenRecording>& recordings,
+                                       const ModelFit& fit, std::size_t first) {
+  std::vector<Effect> effects(fit.model.effects.begin(),
+                              fit.model.effects.begin() + static_cast<std::ptrdiff_t>(first));
+  double ratio = 0.0;
+  double motion = 0.0;
+  for (std::size_t k = first; k < fit.model.effects.size(); ++k) {
+    const Effect& one = fit.model.effects[k];
+    if (one.channel == Channel::difference) {
+      ratio = one.coefficients.front();
+    } else if (is_motion(one.channel)) {
+      motion += one.coefficients.front();
+    } else {
+      effects.push_back(one);
+    }
+  }
+  if (ratio == 0.0 || fit.model.effects.size() - effects.size() < 2) return std::nullopt;
+  const bool right = ratio * motion > 0.0;
+  effects.push_back({right ? "right wheel" : "left wheel",
+                     right ? Channel::right : Channel::left,
+                     {"1"},
+                     {right ? ratio : -ratio}});
+  std::optional<ModelFit> one = refit_by(recordings, fit, std::move(effects));
+  if (!one || !does_as_well(*one, fit)) return std::nullopt;
+  return one;
+}
+
+/// A gross ratio of the wheels beside a gross scale of both is two wheels of other sizes, each by
+/// itself: "half as large again as the left" would be said of wheels of the stated size.
+ModelFit with_each_wheel(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
+                         std::size_t first) {
+  std::vector<Effect> effects = fit.model.effects;
+  const auto found = [&](Channel channel) {
+    return std::find_if(effects.begin() + static_cast<std::ptrdiff_t>(first), effects.end(),
+                        [channel](const Effect& one) { return one.channel == channel; });
+  };
+  const auto ratio = found(Channel::difference);
+  const auto scale = found(Channel::wheels);
+  if (ratio == effects.end() || scale == effects.end() || !is_gross(*ratio) || !is_gross(*scale)) {
+    return fit;
+  }
+  const double half = 0.5 * ratio->coefficients.front();
+  const double both = scale->coefficients.front();
+  *ratio = {"left wheel", Channel::left, {"1"}, {both - half}};
+  *scale = {"right wheel", Channel::right, {"1"}, {both + half}};
+  return refit_by(recordings, fit, std::move(effects)).value_or(fit);
+}
+
+}  // namespace
+
+ModelFit with_fewest(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
+                     std::size_t first) {
+  if (std::optional<ModelFit> one = with_one_wheel(recordings, fit, first)) return *std::move(one);
+  return with_each_wheel(recordings, with_wheel_scale(recordings, fit, first), first);
+}
+
+}  // namespace trussmap
