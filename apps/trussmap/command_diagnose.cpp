@@ -3,6 +3,7 @@
 //
 // trussmap diagnose: which physical effect is missing from a model.
 #include "commands.hpp"
+#include "floor_maps.hpp"
 #include "model_recordings.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
@@ -28,6 +29,7 @@ struct DiagnoseCommand {
   std::size_t list = 8;
   PageOptions page;
   std::string tolerance;
+  std::string floor_map;
 };
 
 void run_diagnose(const DiagnoseCommand& options) {
@@ -55,11 +57,13 @@ void run_diagnose(const DiagnoseCommand& options) {
                             tolerance),
              options.page, session.rows.recordings);
   }
+  add_floor_maps(files, report.found.places, options.floor_map);
   files.write();
   progress.end();
-  fmt::print("{}{}{}",
-             diagnosis_text(report.found, report.noise_budget, options.list, style_of(stdout)),
-             constants_text(report.constants, style_of(stdout)), notes_text(session.rows.notes));
+  fmt::print(
+      "{}{}{}{}", diagnosis_text(report.found, report.noise_budget, options.list, style_of(stdout)),
+      constants_text(report.constants, style_of(stdout)),
+      floor_maps_text(report.found.places, options.floor_map), notes_text(session.rows.notes));
   end_by(tolerance);
 }
 
@@ -75,6 +79,7 @@ void setup_diagnose(const Command& app) {
   add_tolerance(command, options->tolerance);
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
+  add_floor_map_option(command, options->floor_map);
   command.footer(
       "Tries the whole catalogue, and every channel against every variable and covariate. "
       "Missing:\n"

@@ -24,8 +24,8 @@ constexpr std::array<std::string_view, 11> kWritten{"--out",  "OUT",       "--js
                                                     "--csv",  "--svg",     "--tum",  "--kitti",
                                                     "--mcap", "--drawing", "--write"};
 /// What is neither: stores and folders that a command goes on with, or adds files to.
-constexpr std::array<std::string_view, 5> kGoesOn{"--store", "FLEET", "--work", "--plots",
-                                                  "--maps"};
+constexpr std::array<std::string_view, 6> kGoesOn{"--store", "FLEET",  "--work",
+                                                  "--plots", "--maps", "--floor-map"};
 /// Of a recording's folder.
 constexpr std::array<std::string_view, 6> kStreams{"drive.csv", "sightings.csv", "survey.csv",
                                                    "truth.csv", "fixes.csv",     "loops.csv"};

@@ -201,7 +201,7 @@ struct CompareOptions {
 inline constexpr int kFewestTests = 5;  ///< degrees of freedom that make a test
 
 /// What speaks against a model.
-enum class Objection { none, chi2, trend, effect, noise, change };
+enum class Objection { none, chi2, trend, effect, noise, change, place };
 
 struct Comparison {
   Objection objection = Objection::none;

@@ -238,6 +238,37 @@ struct ChangingCoefficient {
   std::vector<std::string> goes_with;
 };
 
+// ----------------------------------------
+// Fields of places.
+
+/// A channel that differs from place to place: a smooth field over the floor (travel, turn, creep:
+/// the floor map; compass: the magnetic map), beside what is the same everywhere.
+struct FieldOfPlaces {
+  Channel channel = Channel::travel;
+  double size = 0.0;  ///< sd over the way that was driven, in the channel's unit
+  /// m, of Matern's correlation, smoothness 1, the likeliest: 0.14 is left so far apart.
+  double length = 0.0;
+  double p_value = 1.0;        ///< of none, times the channels asked
+  double chi2_decrease = 0.0;  ///< gain in -2 log likelihood, times the dispersion that it leaves
+  double told = 0.0;           ///< share of its variance along the way that the recordings tell
+  /// Others that a field of would explain it as well: within kToldApart of chi^2.
+  std::vector<Channel> rivals;
+  /// Findings at a place that explain it as well: then it is these, and no field.
+  std::vector<std::string> patches;
+  /// Centre of the first cell, m; cells are squares, those of a row along x one after the other,
+  /// the row of least y first.
+  double x = 0.0;
+  double y = 0.0;
+  double cell = 0.0;  ///< m, its side
+  int columns = 0;
+  int rows = 0;
+  /// Less its mean over the way, in the channel's unit; NaN where the robot never was.
+  std::vector<double> mean;
+  std::vector<double> sd;  ///< its standard error
+
+  [[nodiscard]] bool is_field() const { return patches.empty(); }
+};
+
 struct Diagnosis {
   enum class Verdict { missing, nothing_missing, unexplained_misfit };
   Verdict verdict = Verdict::nothing_missing;
@@ -255,6 +286,7 @@ struct Diagnosis {
   Explanations explanations;
   /// Of the model's effects and of those that are missing, surest first.
   std::vector<ChangingCoefficient> changing;
+  std::vector<FieldOfPlaces> places;  ///< channels that differ by place, surest first
   std::vector<Unobservable> unobservable;
   std::vector<NoiseTest> noise;   ///< best explanation first
   std::vector<EventTest> events;  ///< likeliest first

@@ -59,6 +59,8 @@
 
 namespace trussmap {
 
+struct FieldOfPlaces;
+
 // Maps, whatever the ending says.
 
 /// Whether the name ends like a map's: .graphml, .g2o, .geojson, .dot, .yaml or .yml.
@@ -88,6 +90,10 @@ namespace trussmap {
 /// A FeatureCollection: a Point per landmark, a LineString per route, with their numbers as
 /// properties. Coordinates are metres in the map frame, not degrees.
 [[nodiscard]] std::string format_geojson(const LandmarkGraph& map);
+
+/// A field over the floor (diagnose.hpp): a Polygon per cell that the robot was in, with `mean`
+/// and `sd` in the channel's unit, `channel` and `unit` as properties.
+[[nodiscard]] std::string format_geojson(const FieldOfPlaces& field);
 
 /// An undirected graph with pinned positions in metres: `neato -Tsvg` draws it as it lies.
 [[nodiscard]] std::string format_dot(const LandmarkGraph& map);

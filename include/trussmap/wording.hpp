@@ -102,6 +102,13 @@ struct Advice {
 /// "wheelbase changes at t = 412 s (395 to 430 s): before, the wheelbase is ...; after, ...".
 [[nodiscard]] std::string in_words(const ChangingCoefficient& change);
 
+/// "travel differs from place to place".
+[[nodiscard]] std::string field_in_words(Channel channel);
+/// "travel differs from place to place: sd 0.82 %, over about 4.1 m"; where rivals or a patch
+/// explain it as well: "; or it is creep to the left", "; explained as well by slippery patch
+/// (...)".
+[[nodiscard]] std::string in_words(const FieldOfPlaces& field);
+
 // Verdicts, as files have them.
 
 [[nodiscard]] std::string_view name_of(Status status);   ///< "cannot tell"

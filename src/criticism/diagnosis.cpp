@@ -6,6 +6,7 @@
 #include "criticism/data_lacks.hpp"
 #include "criticism/defence.hpp"
 #include "criticism/diagnosed_changes.hpp"
+#include "criticism/diagnosed_places.hpp"
 #include "criticism/effect_search.hpp"
 #include "criticism/explanations.hpp"
 #include "criticism/look_alikes.hpp"
@@ -348,7 +349,10 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
     if (defended.otherwise) judge_by(std::move(*defended.otherwise));
   }
   explain(run.result, run.searched, under->fit, with);
-  if (missing.empty() || with) tell_changes(fit, under->fit, with, run.result);
+  if (missing.empty() || with) {
+    tell_changes(fit, under->fit, with, run.result);
+    tell_places(recordings, fit, under->fit, with, run.result);
+  }
   const Noise& asked_of = options.estimate_noise ? stated : fit.model.noise;
   FitAnswers answers;
   bool answered = under->noise.changed();  // the noise is not the model's any more

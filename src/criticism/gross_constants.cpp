@@ -12,7 +12,6 @@
 #include "criticism/refits.hpp"
 #include "criticism/tested_candidate.hpp"
 #include "drive/steered_motion.hpp"
-#include "effects/channel_physics.hpp"
 #include "fit/fit_state.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 #include "statistics/distributions.hpp"

@@ -57,6 +57,12 @@ struct Score {
 /// goes with events and accelerations, which a second's middle says nothing about.
 enum class Resolution { exact, quick, screening };
 
+/// What many sparse columns say at once: M_'M_ and M_'r.
+struct ScoreInformation {
+  Eigen::MatrixXd G;
+  Eigen::VectorXd s;
+};
+
 class ScoreTest {
  public:
   /// Keeps a reference to the fit. A copy shares all but what it is conditioned on.
@@ -86,6 +92,16 @@ class ScoreTest {
   [[nodiscard]] Eigen::MatrixXd free_of_map(const Eigen::MatrixXd& M) const;
   /// M less its projections on J and on what is present.
   [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& M) const;
+
+  /// A channel's whitened column cut in pieces, as ColumnBuilder::cut_column.
+  [[nodiscard]] SparseMatrix cut_column(Channel channel,
+                                        const std::vector<std::vector<RowShares>>& shares,
+                                        int count) const {
+    return builders_->exact.cut_column(channel, shares, count);
+  }
+  /// Of whitened columns, without ever holding M_: its cost is a solution of the map's system for
+  /// each.
+  [[nodiscard]] ScoreInformation information(const SparseMatrix& M) const;
 
   /// Whether the effect would be seen but for what is present: the model has it, or its like.
   [[nodiscard]] bool is_present(const Effect& effect) const;

@@ -6,6 +6,7 @@
 #include "parallel/parallel_for.hpp"
 
 #include <utility>
+#include <vector>
 
 namespace trussmap {
 namespace {
@@ -70,6 +71,32 @@ void RecordingSystem::add_transposed_times(const Eigen::Ref<const Eigen::MatrixX
     if (state.previous < 0) continue;
     result.row(normal_.offset(state_node(state.previous))) -= state.keep / state.sd * part;
   }
+}
+
+SparseMatrix RecordingSystem::rows_by_nodes() const {
+  std::vector<Eigen::Triplet<double, int>> entries;
+  for (std::size_t k = 0; k < J_.size(); ++k) {
+    const int rows = problem_.measurements[k].rows;
+    for (const Link& link : links_of(k)) {
+      const int at = normal_.offset(link.node);
+      for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < link.J.cols(); ++column) {
+          entries.emplace_back(first_row_[k] + row, at + column, link.J(row, column));
+        }
+      }
+    }
+  }
+  for (std::size_t k = 0; k < problem_.noise_states.size(); ++k) {
+    const NoiseState& state = problem_.noise_states[k];
+    const int own = normal_.offset(state_node(static_cast<int>(k)));
+    entries.emplace_back(state_row(k), own, 1.0 / state.sd);
+    if (state.previous < 0) continue;
+    entries.emplace_back(state_row(k), normal_.offset(state_node(state.previous)),
+                         -state.keep / state.sd);
+  }
+  SparseMatrix J(rows_, normal_.unknowns());
+  J.setFromTriplets(entries.begin(), entries.end());
+  return J;
 }
 
 Eigen::MatrixXd RecordingSystem::times(const Eigen::MatrixXd& nodes) const {

@@ -131,6 +131,8 @@ class RecordingSystem {
   /// J'v and J x, J as linearised.
   [[nodiscard]] Eigen::MatrixXd transposed_times(const Eigen::MatrixXd& rows) const;
   [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& nodes) const;
+  /// J as it is, rows x unknowns of normal_equations().
+  [[nodiscard]] SparseMatrix rows_by_nodes() const;
   /// rows -= J nodes.
   void subtract_times(const Eigen::MatrixXd& nodes, Eigen::MatrixXd& rows) const;
   /// The columns less their projection on J: what landmarks and poses leave of them. Call after

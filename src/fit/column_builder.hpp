@@ -15,7 +15,9 @@
 #pragma once
 
 #include "fit/effect_columns.hpp"
+#include "linalg/sparse_cholesky.hpp"
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -24,6 +26,12 @@
 #include <vector>
 
 namespace trussmap {
+
+/// How much of a row is in each of a few columns; a share of 0: none.
+struct RowShares {
+  std::array<int, 4> column{};
+  std::array<double, 4> share{};
+};
 
 class ColumnBuilder {
  public:
@@ -43,6 +51,11 @@ class ColumnBuilder {
   [[nodiscard]] Eigen::MatrixXd columns(const Effect& effect) {
     return std::move(columns(std::span(&effect, 1)).front());
   }
+  /// The column of a channel that acts on drives, its shape 1, cut into `count`: by the shares that
+  /// each session's rows have in them. Of every row by itself (not coarsened).
+  [[nodiscard]] SparseMatrix cut_column(Channel channel,
+                                        const std::vector<std::vector<RowShares>>& shares,
+                                        int count) const;
   /// |f| at most, per coefficient.
   [[nodiscard]] std::vector<double> largest(const Effect& effect);
 

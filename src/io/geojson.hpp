@@ -32,6 +32,21 @@ namespace trussmap {
           {"properties", std::move(properties)}};
 }
 
+/// A square with its sides along the axes.
+[[nodiscard]] inline nlohmann::json geojson_square(const Vector2& centre, double side,
+                                                   nlohmann::json properties) {
+  const double half = 0.5 * side;
+  nlohmann::json ring = nlohmann::json::array();
+  // Anticlockwise, and closed: RFC 7946, 3.1.6.
+  for (const Vector2& corner : {Vector2(-half, -half), Vector2(half, -half), Vector2(half, half),
+                                Vector2(-half, half), Vector2(-half, -half)}) {
+    ring.push_back(geojson_coordinates(centre + corner));
+  }
+  return {{"type", "Feature"},
+          {"geometry", {{"type", "Polygon"}, {"coordinates", nlohmann::json::array({ring})}}},
+          {"properties", std::move(properties)}};
+}
+
 /// A file's text.
 [[nodiscard]] inline std::string geojson_text(const nlohmann::json& features) {
   return nlohmann::json{{"type", "FeatureCollection"}, {"features", features}}.dump(1) + "\n";

@@ -7,6 +7,7 @@
 #include "report/fit_sections.hpp"
 #include "report/noise_verdict.hpp"
 #include "report/page_words.hpp"
+#include "report/places_found.hpp"
 #include "report/result_rows.hpp"
 #include "report/rivals.hpp"
 #include "report/robot_off.hpp"
@@ -97,6 +98,7 @@ ResultRows missing_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& evi
     }
   }
   for (std::string& one : changing_sentences(diagnosis)) rows.otherwise.push_back(std::move(one));
+  for (std::string& one : place_sentences(diagnosis)) rows.otherwise.push_back(std::move(one));
   if (diagnosis.next_drive) {
     rows.next.push_back("To tell them apart, " + in_words(diagnosis.next_drive) + ".");
   }
@@ -172,10 +174,23 @@ ResultRows changing_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& ev
   return rows;
 }
 
+/// Of a model that has what is there, but something differs from place to place.
+ResultRows place_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
+  ResultRows rows;
+  rows.missing = {capitalised(objection_in_words(diagnosis, evidence.given.comparison)) + "."};
+  rows.large = place_sentences(diagnosis);
+  rows.sure = {
+      fmt::format("Were it the same everywhere, noise would show as much with probability {}.",
+                  chance_text(diagnosis.places.front().p_value))};
+  rows.next = {"Look at its map for what the floor, or the building, has there."};
+  return rows;
+}
+
 ResultRows rows_on(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
   ResultRows rows =
       diagnosis.verdict == Diagnosis::Verdict::missing ? missing_rows(diagnosis, evidence)
       : diagnosis.objection == Objection::change       ? changing_rows(diagnosis, evidence)
+      : diagnosis.objection == Objection::place        ? place_rows(diagnosis, evidence)
       : diagnosis.verdict == Diagnosis::Verdict::nothing_missing || is_slight_misfit(diagnosis)
           ? faultless_rows(diagnosis, evidence)
           : unexplained_rows(diagnosis, evidence);
@@ -276,6 +291,7 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidenc
   if (place) page.sections.push_back(maps);
   if (!evidence.effects.empty()) page.sections.push_back(cause_section(sized, evidence));
   add_changes(diagnosis, page);
+  add_places(diagnosis, page);
   const bool noise_first = evidence.effects.empty() && noise_is_wrong(diagnosis);
   PageSection noise =
       noise_first ? noise_section(given, diagnosis.under->noise) : noise_section(models);

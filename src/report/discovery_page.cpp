@@ -7,6 +7,7 @@
 #include "report/fit_sections.hpp"
 #include "report/noise_verdict.hpp"
 #include "report/page_words.hpp"
+#include "report/places_found.hpp"
 #include "report/result_rows.hpp"
 #include "report/rivals.hpp"
 #include "report/robot_off.hpp"
@@ -238,6 +239,7 @@ Page discovery_page(const Discovery& discovery, const DiscoveryEvidence& evidenc
   page.sections.push_back(
       maps_section("Where legs end off, model by model", models, evidence.effects));
   add_changes(discovery.last, page);
+  add_places(discovery.last, page);
   if (!noise_alone) page.sections.push_back(std::move(noise));
   page.sections.push_back(trend_section("What errors go with, in the model found",
                                         evidence.found.comparison, evidence.trends));

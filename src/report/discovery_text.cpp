@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "report/changing_effects.hpp"
+#include "report/places_found.hpp"
 #include "trussmap/texts.hpp"
 #include "trussmap/wording.hpp"
 
@@ -95,7 +96,7 @@ std::string discovery_text(const Discovery& result, const Noise& given,
           fmt::format("  instead of {} it could be: {} more\n", step.added->name, rivals - kMost);
     }
   }
-  text += changing_text(result.last);
+  text += changing_text(result.last) + places_text(result.last);
   for (const std::string& warning : result.found.warnings) {
     text += warning_text(warning, style);
   }

@@ -271,6 +271,34 @@ inline constexpr auto kDescribed<ChangingCoefficient> = described(
     field(
         "in_words", [](const ChangingCoefficient& one) { return in_words(one); }, kInWords));
 
+template <>
+inline constexpr auto kDescribed<FieldOfPlaces> = described(
+    field("channel", &FieldOfPlaces::channel, "that differs from place to place"),
+    field(
+        "unit", [](const FieldOfPlaces& one) { return std::string(facts_of(one.channel).unit); },
+        "of size, mean and sd; empty: a share"),
+    field("size", &FieldOfPlaces::size, "sd over the way that was driven"),
+    field("length_m", &FieldOfPlaces::length,
+          "so far apart places have a correlation of 0.14 left, the likeliest"),
+    share("p_value", &FieldOfPlaces::p_value, "of no field, times the channels asked"),
+    field("chi2_decrease", &FieldOfPlaces::chi2_decrease,
+          "that it takes away: the gain in -2 log likelihood, times the dispersion left"),
+    share("told", &FieldOfPlaces::told, "of its variance along the way, by these recordings"),
+    field("rivals", &FieldOfPlaces::rivals, "channels, a field of which would explain it as well"),
+    field("patches", &FieldOfPlaces::patches,
+          "candidates at a place that explain it as well: then it is these, and no field"),
+    field("x_m", &FieldOfPlaces::x, "centre of the first cell"),
+    field("y_m", &FieldOfPlaces::y, "likewise"), field("cell_m", &FieldOfPlaces::cell, "its side"),
+    field("columns", &FieldOfPlaces::columns, "cells along x").at_least(1.0),
+    field("rows", &FieldOfPlaces::rows, "cells along y").at_least(1.0),
+    field("mean", &FieldOfPlaces::mean,
+          "of each cell, less the mean over the way; row by row, least y first; null where the "
+          "robot never was")
+        .or_null(),
+    field("sd", &FieldOfPlaces::sd, "their standard errors").or_null(),
+    field(
+        "in_words", [](const FieldOfPlaces& one) { return in_words(one); }, kInWords));
+
 /// The noise that a diagnosis goes by; nullptr where none was estimated.
 [[nodiscard]] inline const FittedNoise* noise_of(const Diagnosis& result) {
   return result.under ? &result.under->noise : nullptr;
@@ -301,6 +329,8 @@ inline constexpr auto kDescribed<Diagnosis> = described(
           "of all sets that are not listed"),
     field("changing", &Diagnosis::changing,
           "effects of the model, and missing ones, whose coefficients change, surest first"),
+    field("places", &Diagnosis::places,
+          "channels that differ from place to place, as maps of cells, surest first"),
     field("noise", &Diagnosis::noise,
           "laws that explain what errors there are beyond what the model states, best first"),
     field("noise_estimated", noise_of, "by which all is judged; null with --stated-noise"),
@@ -388,6 +418,8 @@ inline constexpr auto kDescribed<Discovery> = described(
     field("effects", through(&Discovery::found, &ModelFit::effects), "of the model found"),
     field("changing", through(&Discovery::last, &Diagnosis::changing),
           "effects of the last model, and missing ones, whose coefficients change, surest first"),
+    field("places", through(&Discovery::last, &Diagnosis::places),
+          "channels that differ from place to place beside the last model"),
     field(
         "noise_estimated", [](const Discovery& one) { return noise_of(one.last); },
         "by which all is judged; null with --stated-noise"),

@@ -102,6 +102,11 @@ std::string change_in_words(const Diagnosis& diagnosis) {
   return changes_in_words(name_in_words(diagnosis.changing.front().effect));
 }
 
+std::string place_in_words(const Diagnosis& diagnosis) {
+  const auto field = std::ranges::find_if(diagnosis.places, &FieldOfPlaces::is_field);
+  return field_in_words(field->channel);
+}
+
 }  // namespace
 
 std::string objection_in_words(const Comparison& result) {
@@ -124,6 +129,7 @@ std::string objection_in_words(const Comparison& result) {
     case Objection::change:
       return "errors are small enough as a whole, but " + changes_in_words(result.changing) +
              " (see trussmap diagnose)";
+    case Objection::place:  // no comparison asks
     case Objection::effect:
       break;
   }
@@ -134,6 +140,7 @@ std::string objection_in_words(const Comparison& result) {
 
 std::string objection_in_words(const Diagnosis& diagnosis, const Comparison& result) {
   if (diagnosis.objection == Objection::change) return change_in_words(diagnosis);
+  if (diagnosis.objection == Objection::place) return place_in_words(diagnosis);
   return diagnosis.objection == Objection::noise ? kNoNoise : objection_in_words(result);
 }
 
@@ -172,6 +179,7 @@ std::string verdict_of_all(const Diagnosis& result) {
                       result.tried);
   }
   if (result.objection == Objection::change) return text + ": " + change_in_words(result);
+  if (result.objection == Objection::place) return text + ": " + place_in_words(result);
   if (result.objection == Objection::noise) {
     return text +
            fmt::format(": {}, and none of {} effects tried explains it", kNoNoise, result.tried);
@@ -241,6 +249,9 @@ std::string stop_in_words(const Discovery& result) {
   if (result.consistent) return why;
   if (result.last.objection == Objection::change) {
     return why + ", but " + change_in_words(result.last);
+  }
+  if (result.last.objection == Objection::place) {
+    return why + ", but " + place_in_words(result.last);
   }
   return why + (is_slight_misfit(result.last)
                     ? fmt::format(", but a slight misfit is not explained (noise alone makes as "

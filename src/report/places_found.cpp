@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "report/places_found.hpp"
+
+#include "plot/layers.hpp"
+#include "report/page_words.hpp"
+#include "trussmap/table.hpp"
+#include "trussmap/wording.hpp"
+#include "wording/channel_words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+constexpr double kFieldHeight = 480.0;  // pixels
+constexpr double kFieldWidth = 560.0;   // that the marks have, about
+
+/// Cells as dots: large where the field is known, small where hardly anything is.
+ChartLayer cells_layer(const FieldOfPlaces& field, const ShownUnit& unit, double most, bool known) {
+  constexpr double kKnown = 0.6;  // of the field's size
+  const double scale = std::min(kFieldWidth / field.columns, (kFieldHeight - 80.0) / field.rows);
+  ChartLayer layer{LayerKind::dots,
+                   known ? "known well" : "uncertain",
+                   {{"x [m]"},
+                    {"y [m]"},
+                    {fmt::format("value [{}]", unit.name)},
+                    {fmt::format("standard error [{}]", unit.name)}}};
+  layer.size = (known ? 0.45 : 0.2) * scale;
+  for (int row = 0; row < field.rows; ++row) {
+    for (int column = 0; column < field.columns; ++column) {
+      const auto at = static_cast<std::size_t>(row * field.columns + column);
+      if (std::isnan(field.mean[at]) || (field.sd[at] < kKnown * field.size) != known) continue;
+      layer.columns[0].numbers.push_back(field.x + field.cell * column);
+      layer.columns[1].numbers.push_back(field.y + field.cell * row);
+      layer.columns[2].numbers.push_back(unit.factor * field.mean[at]);
+      layer.columns[3].numbers.push_back(unit.factor * field.sd[at]);
+      layer.shade.push_back(field.mean[at] / most);
+    }
+  }
+  return layer;
+}
+
+Chart field_chart(const FieldOfPlaces& field) {
+  const ShownUnit unit = shown_unit(std::string(facts_of(field.channel).unit));
+  double most = 0.0;
+  for (const double one : field.mean) most = std::isnan(one) ? most : std::max(most, std::abs(one));
+  most = std::max(most, 1e-300);
+  Chart chart;
+  chart.id = fmt::format("places-{}", name_of(field.channel));
+  chart.title = capitalised(field_in_words(field.channel));
+  chart.caption =
+      "What it is near each place that the robot drove over, less its mean over the way: the mean "
+      "of all smooth fields, each by how well it explains the measurements. Small dots: its "
+      "standard error there is more than 0.6 of what the field varies by as a whole.";
+  chart.x.title = "x [m]";
+  chart.y.title = "y [m]";
+  chart.equal_aspect = true;
+  chart.height = kFieldHeight;
+  for (const bool known : {true, false}) {
+    ChartLayer layer = cells_layer(field, unit, most, known);
+    if (layer.shade.empty()) continue;
+    if (chart.layers.empty()) {
+      layer.key = {fmt::format("{:.2g} {}", -unit.factor * most, unit.name), "as on average",
+                   fmt::format("{:.2g} {}", unit.factor * most, unit.name)};
+    }
+    chart.layers.push_back(std::move(layer));
+  }
+  return chart;
+}
+
+}  // namespace
+
+std::string places_text(const Diagnosis& diagnosis) {
+  std::string text;
+  for (const FieldOfPlaces& one : diagnosis.places) {
+    if (text.empty()) text = "\nWhat differs from place to place\n";
+    text += fmt::format("  {} (p {})\n", in_words(one), probability_text(one.p_value));
+  }
+  return text;
+}
+
+std::vector<std::string> place_sentences(const Diagnosis& diagnosis) {
+  std::vector<std::string> sentences;
+  sentences.reserve(diagnosis.places.size());
+  for (const FieldOfPlaces& one : diagnosis.places) {
+    sentences.push_back(typeset(capitalised(in_words(one)) + "."));
+  }
+  return sentences;
+}
+
+void add_places(const Diagnosis& diagnosis, PageContent& page) {
+  if (diagnosis.places.empty()) return;
+  PageSection section{"What differs from place to place", {}};
+  for (std::string& one : place_sentences(diagnosis)) section.blocks.emplace_back(std::move(one));
+  ChartRow charts;
+  for (const FieldOfPlaces& one : diagnosis.places) charts.push_back(field_chart(one));
+  section.blocks.emplace_back(std::move(charts));
+  page.sections.push_back(std::move(section));
+}
+
+}  // namespace trussmap

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Channels that differ from place to place, in lines of text and as maps on a page.
+#pragma once
+
+#include "report/page.hpp"
+#include "trussmap/diagnose.hpp"
+
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+/// A line each; empty where none differs.
+[[nodiscard]] std::string places_text(const Diagnosis& diagnosis);
+
+/// A sentence each, as a page has it.
+[[nodiscard]] std::vector<std::string> place_sentences(const Diagnosis& diagnosis);
+
+/// Those, and a map of each; none where none differs.
+void add_places(const Diagnosis& diagnosis, PageContent& page);
+
+}  // namespace trussmap
