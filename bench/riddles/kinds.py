@@ -131,8 +131,6 @@ def constants(draw, has):
     names = ["wheelbase", "wheel scale"]
     if has["drive"] == "differential":
         names += ["left x 1", "right x 1"]
-    if has["drive"] == "skid-steer":
-        names += ["wheel diameter ratio"]
     if has["drive"] in STEERING:
         names += ["steering gain"]
     names += [f"radius of wheel {draw.randint(1, WHEELS[has['drive']])}"] if has["drive"] in WHEELS else []
