@@ -97,6 +97,29 @@ class Matcher:
                 found[k] = at
         return found
 
+    def together(self, texts):
+        """Whether each hidden effect is shown by all of these at once: constants have more than one set of names."""
+        for k in range(len(self.truth["effects"])):
+            twin, whole = self.twin(k)
+            try:
+                left = self.chi2("fit", twin, [effect_of(text) for text in texts])
+            except Refused:
+                return False
+            if left > (1.0 - SAME * SAME) * whole:
+                return False
+        return True
+
+    def together_sized(self, answered):
+        """Whether these leave no more of all hidden effects than sizes that are a fifth off would."""
+        model, whole, shown = (self.scratch / f"all{end}" for end in (".toml", "-whole", "-shown"))
+        model.write_text(model_text(self.truth["effects"], self.base))
+        self.program.run("simulate", *self.truth["simulate"], "--effects", model, "--noise-free", "--out", whole)
+        cut(whole, shown, self.truth["until_s"])
+        try:
+            return self.chi2("compare", shown, answered) <= SHARE * SHARE * self.chi2("compare", shown, [])
+        except Refused:
+            return False
+
     def same_channel(self, k, text):
         return self.plain(text)[0] == self.plain(self.truth["effects"][k]["name"])[0]
 

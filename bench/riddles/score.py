@@ -76,29 +76,35 @@ def held_out_error(program, out, truth, named, model, scratch):
         return None, None
 
 
+def found_of(matcher, truth, named, answered):
+    """What the effects that are named show of the hidden ones."""
+    pairs = matcher.pairs([one["effect"] for one in named])
+    hits = [k for k, one in enumerate(pairs) if one is not None]
+    whole = bool(truth["effects"]) and len(hits) == len(truth["effects"])
+    hit = lambda k: named[pairs[k]]
+    found = {"all found": whole, "false": len(named) - len(hits),
+             "form right": whole and all(matcher.same_channel(k, hit(k)["effect"]) for k in hits),
+             "size right": whole and all(matcher.right_size(k, hit(k)["effect"], hit(k)["coefficients"]) for k in hits)}
+    if truth["kind"] == "gross" and not whole and 0 < len(named) <= len(truth["effects"]) and \
+            matcher.together([one["effect"] for one in named]):
+        sized = len(answered) == len(named) and matcher.together_sized(answered)
+        found |= {"all found": True, "false": 0, "size right": sized}
+    return found
+
+
 def score_one(program, out, truth, rows, models):
     with tempfile.TemporaryDirectory() as scratch:
         scratch = pathlib.Path(scratch)
         said = class_of(rows)
         named = [one for one in rows if one["effect"] and one["class"] in ("effect", "gross constant")]
-        listed = [text for one in rows for text in [one["effect"], *one["alternatives"]] if text]
-        score = {"riddle": truth["riddle"], "kind": truth["kind"], "said": said,
-                 "class right": said in truth["classes"]}
+        answered = [effect_of(one["effect"], one["coefficients"]) for one in named if one["coefficients"]]
         matcher = Matcher(program, out, truth, scratch)
-        pairs = matcher.pairs([one["effect"] for one in named])
-        hits = [k for k, one in enumerate(pairs) if one is not None]
-        whole = bool(truth["effects"]) and len(hits) == len(truth["effects"])
-        score["found"] = len(hits)
-        score["all found"] = whole
-        score["false"] = len(named) - len(hits)
-        score["form right"] = whole and all(
-            matcher.same_channel(k, named[pairs[k]]["effect"]) for k in hits)
-        score["size right"] = whole and all(
-            matcher.right_size(k, named[pairs[k]]["effect"], named[pairs[k]]["coefficients"]) for k in hits)
-        score["listed"] = whole or (bool(listed) and bool(truth["effects"]) and all(
+        score = {"riddle": truth["riddle"], "kind": truth["kind"], "said": said,
+                 "class right": said in truth["classes"], **found_of(matcher, truth, named, answered)}
+        listed = [text for one in rows for text in [one["effect"], *one["alternatives"]] if text]
+        score["listed"] = score["all found"] or (bool(listed) and bool(truth["effects"]) and all(
             any(matcher.shows(k, text) for text in listed) for k in range(len(truth["effects"]))))
         model = models / f"{truth['riddle']}.toml" if models else None
-        answered = [effect_of(one["effect"], one["coefficients"]) for one in named if one["coefficients"]]
         score["before"], score["left"] = held_out_error(
             program, out, truth, answered, model.read_text() if model and model.is_file() else "", scratch)
         return score
