@@ -50,10 +50,11 @@ class Riddles(unittest.TestCase):
             writer.writerows(rows)
         return file
 
-    def score(self, rows):
+    def score(self, rows, seeds="1..3"):
         """The row of each riddle."""
         each = pathlib.Path(self.scratch.name) / "each.csv"
-        ran = self.run_script("score.py", self.out, self.answers(rows), "--command", COMMAND, "--each", each)
+        ran = self.run_script("score.py", self.out, self.answers(rows), "--command", COMMAND, "--each", each,
+                              "--seeds", seeds)
         self.assertEqual(ran.returncode, 0, ran.stderr)
         with open(each, newline="") as stream:
             return {row["riddle"]: row for row in csv.DictReader(stream)}
@@ -87,13 +88,13 @@ class Riddles(unittest.TestCase):
         self.assertEqual(scores[NOTHING]["class right"], "False")
 
     def test_half_the_size_is_found_and_not_right(self):
-        row = self.score([self.true_row(ONE, times=0.5)])[ONE]
+        row = self.score([self.true_row(ONE, times=0.5)], "2")[ONE]
         self.assertEqual((row["all found"], row["size right"]), ("True", "False"))
 
     def test_cannot_tell_counts_what_it_lists_and_is_never_found(self):
         listed = f"wheelbase | {self.truth[ONE]['effects'][0]['name']}"
         scores = self.score([[ONE, "cannot tell", "travel scale", "", listed],
-                             [OTHER, "cannot tell", "travel scale", "", "wheelbase"]])
+                             [OTHER, "cannot tell", "travel scale", "", "wheelbase"]], "2..3")
         self.assertEqual((scores[ONE]["all found"], scores[ONE]["listed"]), ("False", "True"))
         self.assertEqual((scores[OTHER]["all found"], scores[OTHER]["listed"]), ("False", "False"))
 
