@@ -21,6 +21,7 @@ from program import COMMAND, Program, Refused, effect_of, model_text, numbers_of
 
 ANSWERS = ["riddle", "class", "effect", "coefficients", "alternatives", "seconds"]
 PROBABILITIES = ["riddle", "effect", "alternatives", "probability"]
+NAMED = ("missing", "negligible")  # a negligible one is there, and moves the robot by less than noise
 GROSS = 0.03  # a constant that is off by more
 LISTED = 0.05  # effects of other explanations are alternatives from this probability on
 
@@ -37,7 +38,7 @@ def is_gross(constant):
 def alternatives_of(found, diagnosis):
     """What looks the same as a finding; with several explanations what stands in the others, too."""
     listed = [written(one) for one in found["indistinguishable_from"]]
-    named = {written(one) for one in diagnosis["candidates"] if one["status"] == "missing"}
+    named = {written(one) for one in diagnosis["candidates"] if one["status"] in NAMED}
     for explanation in diagnosis["explanations"]:
         if explanation["probability"] >= LISTED and not explanation["named"]:
             listed += [written(one) for one in explanation["effects"]]
@@ -71,7 +72,7 @@ def answer(program, out, number, keep):
             return [[name, "cannot tell", "", "", "", f"{time.monotonic() - begun:.1f}"]], []
         seconds = f"{time.monotonic() - begun:.1f}"
         diagnosis = json.loads(file.read_text())
-        found = [one for one in diagnosis["candidates"] if one["status"] == "missing"]
+        found = [one for one in diagnosis["candidates"] if one["status"] in NAMED]
         if diagnosis["verdict"] != "missing" or not found:
             said = "noise" if diagnosis["noise_estimated"]["changed"] else "nothing"
             if diagnosis["verdict"] == "unexplained misfit":

@@ -12,6 +12,9 @@ import tomllib
 
 import numpy as np
 
+COLUMNS = {"differential": ["left", "right"], "skid-steer": ["left", "right"], "tricycle": ["wheel", "steer"],
+           "ackermann": ["wheel", "steer"], "omni3": ["wheel1", "wheel2", "wheel3"],
+           "mecanum": ["front_left", "front_right", "rear_left", "rear_right"], "wheels": []}
 STEP = 1e-4  # of a coefficient, for derivatives
 
 
@@ -33,7 +36,8 @@ class Riddle:
         self.t = self.drive["t"]
         self.dt = np.diff(np.r_[2 * self.t[0] - self.t[1], self.t])
         self.kind = self.robot.get("drive", "differential")
-        self.columns = self.robot.get("columns", ["left", "right"])
+        wheels = [one["column"] for one in self.robot.get("wheel", [])]
+        self.columns = self.robot.get("columns", wheels or COLUMNS[self.kind])
         self.compass, self.gyro = self.drive.get("heading"), self.drive.get("yaw_rate")
         known = {"t", "heading", "yaw_rate", *self.columns}
         self.covariates = {name: one for name, one in self.drive.items() if name not in known}
