@@ -46,9 +46,9 @@ def alternatives_of(found, diagnosis):
 
 
 def fitted(program, folder, found, scratch):
-    """Coefficients of all findings beside each other; their own where a fit of all fails."""
+    """Coefficients of all findings beside each other, from those that diagnose gives; these where a fit of all fails."""
     model, base = pathlib.Path(scratch) / "found.toml", (folder / "model.toml").read_text()
-    model.write_text(model_text([{"name": one["effect"], "channel": one["channel"], "shape": one["shape"]}
+    model.write_text(model_text([{"name": one["effect"], **{key: one[key] for key in ("channel", "shape", "coefficients")}}
                                  for one in found], base))
     try:
         told = program.json("fit", folder, "--model", model)["effects"]

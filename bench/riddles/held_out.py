@@ -49,8 +49,13 @@ def apart(one, other):
 
 def errors(program, folder, truth, texts, scratch):
     """What each further model of `texts` leaves, as a share of what noise alone leaves; the first is the true one."""
-    since, compass = truth["until_s"], truth["robot"]["compass"]
-    reckoned = lambda kind, text: ways(poses(program, folder / kind, text, scratch), since, compass)
+    since, compass, known = truth["until_s"], truth["robot"]["compass"], {}
+
+    def reckoned(kind, text):
+        if (kind, text) not in known:
+            known[kind, text] = ways(poses(program, folder / kind, text, scratch), since, compass)
+        return known[kind, text]
+
     true = reckoned("clean", texts[0])
     noise = apart(reckoned("noisy", texts[0]), true)
     return tuple(apart(reckoned("clean", text), true) / noise for text in texts[1:])
