@@ -17,7 +17,7 @@ import sys
 import tempfile
 import time
 
-from program import COMMAND, Program, Refused, effect_of, model_text, numbers_of, text_of
+from program import COMMAND, Program, Refused, model_text, numbers_of, text_of
 
 ANSWERS = ["riddle", "class", "effect", "coefficients", "alternatives", "seconds"]
 PROBABILITIES = ["riddle", "effect", "alternatives", "probability"]
