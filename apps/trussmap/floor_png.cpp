@@ -3,7 +3,6 @@
 //
 // By libpng's simplified interface.
 #include "floor_maps.hpp"
-#include "geometry/units.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <png.h>
 #include <string>
 #include <string_view>
@@ -134,7 +134,7 @@ void draw_scale(Canvas& canvas, int left, int top, int height, double most, bool
     const double value = 1.0 - 2.0 * y / std::max(1, height - 1);
     canvas.fill(left, top + y, kScaleWidth, 1, shade_of(value, 1.0));
   }
-  const double shown = (angle ? kDegrees : 100.0) * most;
+  const double shown = (angle ? 180.0 / std::numbers::pi : 100.0) * most;
   const char* unit = angle ? "deg" : "%";
   const int text = left + kScaleWidth + 6;
   canvas.write(text, top, fmt::format("+{:.2f}{}", shown, unit));

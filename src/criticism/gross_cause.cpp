@@ -30,7 +30,8 @@ std::vector<Effect> causes_for(const ModelFit& given, const ScoreTest& tests, bo
     const Channel channel = one.effect.channel;
     if (record == nullptr || !one.family.empty() || record->entry.of_covariate()) continue;
     const bool turns = channel == Channel::turn || channel == Channel::rotate ||
-                       channel == Channel::difference || channel == Channel::drift;
+                       channel == Channel::difference || channel == Channel::drift ||
+                       wheel_of(channel).has_value();
     const bool moves = channel == Channel::travel || channel == Channel::advance ||
                        channel == Channel::wheels || channel == Channel::sideways;
     if (!turns && !moves && !is_of_steered_drive(channel)) continue;

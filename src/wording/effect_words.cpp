@@ -186,7 +186,8 @@ std::string_view wrong_sign_in_words(Channel channel, double g) {
   if (g >= -1.0) return "";
   switch (channel) {
     case Channel::turn:
-      return "the robot turns the other way round than its wheels say: left and right exchanged?";
+      return "the robot turns the other way round than its wheels say: left and right exchanged, "
+             "or all wheels counting backwards?";
     case Channel::left:
       return "the left wheel counts backwards: the sign of its ticks?";
     case Channel::right:

@@ -114,6 +114,7 @@ TEST(SlowGrossConstants, TwoWheelsOfOtherSizesAreNamedEach) {
 
 struct WrongSign {
   void (*spoil)(Drive&);
+  bool compass;  ///< tells ahead from back
   const char* name;
   const char* words;
 };
@@ -124,14 +125,17 @@ void negate(std::vector<double>& column) {
 
 TEST(SlowGrossConstants, AWrongSignIsSaidToBeOne) {
   for (const WrongSign& wrong :
-       {WrongSign{[](Drive& drive) { std::swap(drive.left, drive.right); }, "wheelbase",
+       {WrongSign{[](Drive& drive) { std::swap(drive.left, drive.right); }, false, "wheelbase",
                   "left and right exchanged"},
-        WrongSign{[](Drive& drive) { negate(drive.left); }, "left wheel", "left wheel counts back"},
-        WrongSign{[](Drive& drive) { negate(drive.right); }, "right wheel",
+        WrongSign{[](Drive& drive) { negate(drive.left); }, false, "left wheel",
+                  "left wheel counts back"},
+        WrongSign{[](Drive& drive) { negate(drive.right); }, false, "right wheel",
                   "right wheel counts back"},
-        WrongSign{[](Drive& drive) { negate(drive.left), negate(drive.right); }, "wheel scale",
-                  "all wheels count back"}}) {
-    SimulatedRecording one = simulate(small_world(34), {});
+        WrongSign{[](Drive& drive) { negate(drive.left), negate(drive.right); }, true,
+                  "wheel scale", "all wheels count back"}}) {
+    SimulationSettings settings = small_world(34);
+    settings.no_compass = !wrong.compass;
+    SimulatedRecording one = simulate(settings, {});
     const ModelFit right = given(one);
     wrong.spoil(one.drive.recording.drive);
     const auto found =

@@ -181,7 +181,7 @@ TEST(PlaceFields, TheMapOfAFieldIsLikeIt) {
 
 TEST(SlowPlaceFields, ACircleIsStillCalledACircle) {
   const SimulatedRecording one =
-      toured(21, {catalogue_effect("slippery patch (x=12, y=9, r=4)=-0.06")});
+      toured(21, {catalogue_effect("slippery patch (x=12, y=9, r=4)", {-0.06})});
   const Diagnosis result = diagnose({one.drive.recording}, one.model);
   ASSERT_EQ(result.verdict, Diagnosis::Verdict::missing);
   EXPECT_NE(result.missing.find("slippery patch"), std::string::npos) << result.missing;

@@ -11,6 +11,7 @@
 #include "trussmap/check.hpp"
 #include "trussmap/compare.hpp"
 #include "trussmap/diagnose.hpp"
+#include "trussmap/simulated_recording.hpp"
 
 #include <algorithm>
 #include <set>
@@ -127,6 +128,25 @@ TEST(Fixes, DiagnosisNamesTheAntenna) {
   const PlacedDrive drive = placed_drive(options, 8);
   const Diagnosis found = diagnose({drive.recording}, drive.model, {});
   EXPECT_EQ(found.missing, "antenna ahead of the axle");
+}
+
+TEST(Fixes, BesideAKnownDriftInRestsLeaveTheFitWhereItIs) {
+  // A drift turns the robot in rests, too, where its wheels stand still: it slips there as it does
+  // anywhere, and is not turned round and round to bring it a millimetre sideways.
+  SimulationSettings settings;
+  settings.mesh = "4x4";
+  settings.tours = 1;
+  settings.seed = 7;
+  settings.rests = true;
+  settings.fix_rate = 0.5;
+  const SimulatedRecording one = simulate(settings, {catalogue_effect("heading drift", {0.002})});
+  Model known = one.model;
+  known.effects = {catalogue_effect("heading drift", {0.002})};
+  FitOptions as_given;
+  as_given.fit_effects = false;
+  const ModelFit fit = fit_model({one.drive.recording}, known, as_given);
+  EXPECT_GT(fit.p_value, 1e-3);
+  EXPECT_LT(fit.chi2, 1.2 * fit.dof);
 }
 
 /// Held-out legs end at fixes; the model that made them is consistent.
