@@ -159,7 +159,9 @@ std::string floor_png(const FieldOfPlaces& field) {
   for (const double one : field.mean) most = std::isnan(one) ? most : std::max(most, std::abs(one));
   for (int row = 0; row < field.rows; ++row) {
     for (int column = 0; column < field.columns; ++column) {
-      const auto at = static_cast<std::size_t>(row * field.columns + column);
+      const std::size_t at =
+          static_cast<std::size_t>(row) * static_cast<std::size_t>(field.columns) +
+          static_cast<std::size_t>(column);
       if (std::isnan(field.mean[at]) || !(most > 0.0)) continue;
       // What is known of the cell, against what the field varies by.
       const double known = 1.0 - 0.8 * std::min(1.0, std::pow(field.sd[at] / field.size, 2));

@@ -34,7 +34,8 @@ SparseMatrix matern_operator(const SquareGrid& grid, double length) {
       if (row > 0) join(at - grid.columns, at);
     }
   }
-  SparseMatrix K(grid.columns * grid.rows, grid.columns * grid.rows);
+  const Eigen::Index nodes = static_cast<Eigen::Index>(grid.columns) * grid.rows;
+  SparseMatrix K(nodes, nodes);
   K.setFromTriplets(entries.begin(), entries.end());
   return K;
 }

@@ -182,7 +182,7 @@ void append_to(SparseMatrix& M, const SparseMatrix& more) {
   SparseMatrix all(more.rows(), M.cols() + more.cols());
   all.leftCols(M.cols()) = M;
   all.rightCols(more.cols()) = more;
-  M = std::move(all);
+  M.swap(all);
 }
 
 /// Without the channels that cannot show.

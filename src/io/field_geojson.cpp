@@ -16,7 +16,8 @@ std::string format_geojson(const FieldOfPlaces& field) {
   nlohmann::json features = nlohmann::json::array();
   for (int row = 0; row < field.rows; ++row) {
     for (int column = 0; column < field.columns; ++column) {
-      const auto at = static_cast<std::size_t>(row * field.columns + column);
+      const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(field.columns) +
+                      static_cast<std::size_t>(column);
       if (std::isnan(field.mean[at])) continue;
       const Vector2 centre = Vector2(field.x, field.y) + field.cell * Vector2(column, row);
       features.push_back(geojson_square(centre, field.cell,

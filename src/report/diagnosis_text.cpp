@@ -23,11 +23,13 @@ std::string length(double metres, double beside) {
 /// Those that are not told apart, then those that are; of either three.
 std::string look_alikes_text(const std::vector<LookAlike>& all) {
   constexpr std::size_t kMost = 3;
+  constexpr std::size_t kLongestFormula = 60;  // characters; --json has all of it
   std::string same, apart;
   std::size_t sames = 0, aparts = 0;
   for (const LookAlike& rival : all) {
-    const std::string alike = fmt::format("{} ({}), cosine {:.3f}", rival.effect.name,
-                                          formula_of(rival.effect), rival.cosine);
+    const std::string alike =
+        fmt::format("{} ({}), cosine {:.3f}", rival.effect.name,
+                    shortened(formula_of(rival.effect), kLongestFormula), rival.cosine);
     if (rival.told_apart()) {
       if (++aparts > kMost) continue;
       apart += fmt::format(

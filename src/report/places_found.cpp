@@ -34,7 +34,8 @@ ChartLayer cells_layer(const FieldOfPlaces& field, const ShownUnit& unit, double
   layer.size = (known ? 0.45 : 0.2) * scale;
   for (int row = 0; row < field.rows; ++row) {
     for (int column = 0; column < field.columns; ++column) {
-      const auto at = static_cast<std::size_t>(row * field.columns + column);
+      const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(field.columns) +
+                      static_cast<std::size_t>(column);
       if (std::isnan(field.mean[at]) || (field.sd[at] < kKnown * field.size) != known) continue;
       layer.columns[0].numbers.push_back(field.x + field.cell * column);
       layer.columns[1].numbers.push_back(field.y + field.cell * row);
