@@ -214,6 +214,19 @@ bool predicts_worse(const std::vector<DrivenRecording>& recordings, const ModelF
   return before && *before > 0.0 && (!after || *after > kNoWorse * *before);
 }
 
+/// Beside each wheel by itself the ratio and the scale of both are the same in other words.
+bool says_the_same(const Effect& one, const std::vector<Effect>& fitted) {
+  using enum Channel;
+  const auto has = [&fitted](Channel channel) {
+    return std::any_of(fitted.begin(), fitted.end(), [channel](const Effect& other) {
+      return other.channel == channel && other.is_constant();
+    });
+  };
+  const Channel of = one.channel;
+  const bool of_wheels = of == wheels || of == difference || of == left || of == right;
+  return of_wheels && one.is_constant() && has(left) && has(right);
+}
+
 /// What else could leave its trace, at a fit that has it.
 std::vector<LookAlike> look_alikes_at(const std::vector<DrivenRecording>& recordings,
                                       const ModelFit& fit, const ScoreTest& at_fit,
@@ -226,6 +239,7 @@ std::vector<LookAlike> look_alikes_at(const std::vector<DrivenRecording>& record
   for (const Candidate& one : candidates_for(state, tests.context())) {
     const bool other = one.effect.name != effect.name && one.family.empty();
     if (!other || tests.is_present(one.effect)) continue;
+    if (says_the_same(one.effect, fit.model.effects)) continue;
     asked.emplace_back();
     asked.back().candidate = one;
   }
