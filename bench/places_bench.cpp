@@ -19,6 +19,7 @@
 #include "bench_worlds.hpp"
 #include "criticism/place_scores.hpp"
 #include "linalg/dense.hpp"
+#include "statistics/median.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/fit_model.hpp"
 
@@ -30,6 +31,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -118,8 +120,7 @@ std::optional<double> noise_of(const PlaceScores& scores, Channel channel, doubl
   }
   std::vector<double> errors;
   for (Eigen::Index k = 0; k < count; ++k) errors.push_back(std::sqrt(std::abs(G(k, k))));
-  std::nth_element(errors.begin(), errors.begin() + std::ssize(errors) / 2, errors.end());
-  return errors[errors.size() / 2];
+  return median(std::move(errors));
 }
 
 double correlation(const std::vector<double>& a, const std::vector<double>& b) {
@@ -158,14 +159,10 @@ std::string what_is_said(const Diagnosis& result) {
 /// The map against the field, both less their means over the map.
 void compare_maps(const FieldOfPlaces& map, const Waves& field, double sd, Tally& tally) {
   std::vector<double> told, true_values, errors;
-  for (int row = 0; row < map.rows; ++row) {
-    for (int column = 0; column < map.columns; ++column) {
-      const auto at = static_cast<std::size_t>(row * map.columns + column);
-      if (std::isnan(map.mean[at])) continue;
-      told.push_back(map.mean[at]);
-      errors.push_back(map.sd[at]);
-      true_values.push_back(sd * field.at(Vector2(map.x, map.y) + map.cell * Vector2(column, row)));
-    }
+  for (const FieldCell& one : map.cells_driven()) {
+    told.push_back(one.mean);
+    errors.push_back(one.sd);
+    true_values.push_back(sd * field.at(one.centre));
   }
   tally.correlations.push_back(correlation(told, true_values));
   double offset = 0.0;
@@ -216,12 +213,6 @@ void try_field(std::uint64_t seed, Channel channel, const Options& options, Tall
              what_is_said(result));
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::nth_element(values.begin(), values.begin() + std::ssize(values) / 2, values.end());
-  return values[values.size() / 2];
-}
-
 void run_field(Channel channel, const Options& options) {
   Tally tally;
   for (std::uint64_t seed = options.first;
@@ -237,9 +228,9 @@ void run_field(Channel channel, const Options& options) {
       "{}, median {:.2f}, least {:.2f}; within 95 % bands {:.1f} %; length {:.2f} times the true "
       "one (median); {:.2f} s a diagnosis\n",
       name_of(channel), tally.told, tally.worlds, tally.patches, tally.rivals, tally.others, good,
-      tally.correlations.size(), median_of(tally.correlations),
+      tally.correlations.size(), median(tally.correlations),
       tally.correlations.empty() ? 0.0 : *std::ranges::min_element(tally.correlations),
-      100.0 * tally.within / std::max(1.0, tally.cells), median_of(tally.lengths),
+      100.0 * tally.within / std::max(1.0, tally.cells), median(tally.lengths),
       tally.seconds / std::max(1, tally.worlds));
 }
 

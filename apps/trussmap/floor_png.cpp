@@ -155,19 +155,13 @@ std::string floor_png(const FieldOfPlaces& field) {
   const int height = std::max(side * field.rows, 60);
   Canvas canvas(width + kScaleWidth + 3 * kMargin + kNumbers, height + 2 * kMargin);
   canvas.fill(kMargin, kMargin, width, height, kNeverThere);
-  double most = 0.0;
-  for (const double one : field.mean) most = std::isnan(one) ? most : std::max(most, std::abs(one));
-  for (int row = 0; row < field.rows; ++row) {
-    for (int column = 0; column < field.columns; ++column) {
-      const std::size_t at =
-          static_cast<std::size_t>(row) * static_cast<std::size_t>(field.columns) +
-          static_cast<std::size_t>(column);
-      if (std::isnan(field.mean[at]) || !(most > 0.0)) continue;
-      // What is known of the cell, against what the field varies by.
-      const double known = 1.0 - 0.8 * std::min(1.0, std::pow(field.sd[at] / field.size, 2));
-      canvas.fill(kMargin + side * column, kMargin + height - side * (row + 1), side, side,
-                  shade_of(field.mean[at] / most, known));
-    }
+  const double most = field.most();
+  for (const FieldCell& one : field.cells_driven()) {
+    if (!(most > 0.0)) continue;
+    // What is known of the cell, against what the field varies by.
+    const double known = 1.0 - 0.8 * std::min(1.0, std::pow(one.sd / field.size, 2));
+    canvas.fill(kMargin + side * one.column, kMargin + height - side * (one.row + 1), side, side,
+                shade_of(one.mean / most, known));
   }
   draw_scale(canvas, width + 2 * kMargin, kMargin, height, most, field.channel == Channel::compass);
   return canvas.as_png();

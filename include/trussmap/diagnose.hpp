@@ -31,6 +31,7 @@
 
 #include "trussmap/compare.hpp"
 #include "trussmap/noise_fit.hpp"
+#include "trussmap/planar.hpp"
 
 #include <cstddef>
 #include <memory>
@@ -241,6 +242,15 @@ struct ChangingCoefficient {
 // ----------------------------------------
 // Fields of places.
 
+/// A square of a field that the robot was in.
+struct FieldCell {
+  int column = 0;                    ///< along x
+  int row = 0;                       ///< along y
+  Vector2 centre = Vector2::Zero();  ///< m
+  double mean = 0.0;                 ///< in the channel's unit
+  double sd = 0.0;                   ///< its standard error
+};
+
 /// A channel that differs from place to place: a smooth field over the floor (travel, turn, creep:
 /// the floor map; compass: the magnetic map), beside what is the same everywhere.
 struct FieldOfPlaces {
@@ -267,6 +277,10 @@ struct FieldOfPlaces {
   std::vector<double> sd;  ///< its standard error
 
   [[nodiscard]] bool is_field() const { return patches.empty(); }
+  /// Those that the robot was in, row by row.
+  [[nodiscard]] std::vector<FieldCell> cells_driven() const;
+  /// The largest |mean|.
+  [[nodiscard]] double most() const;
 };
 
 struct Diagnosis {

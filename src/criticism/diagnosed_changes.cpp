@@ -3,7 +3,7 @@
 #include "criticism/diagnosed_changes.hpp"
 
 #include "criticism/changing_coefficients.hpp"
-#include "criticism/score_test.hpp"
+#include "criticism/driven_variables.hpp"
 #include "fit/fit_state.hpp"
 
 #include <algorithm>
@@ -13,15 +13,6 @@
 
 namespace trussmap {
 namespace {
-
-/// Whether an effect is a course of time alone, as a coefficient that changes is.
-bool goes_with_time(const Effect& effect) {
-  return std::ranges::all_of(effect.shape, [](const Shape& one) {
-    return !one.variables().empty() && std::ranges::all_of(one.variables(), [](const auto& name) {
-      return name == "t" || name == "distance";
-    });
-  });
-}
 
 /// Takes over those of other fits in place of what is known of the same effects.
 void take_over(std::vector<ChangingCoefficient> others,
@@ -37,18 +28,18 @@ void take_over(std::vector<ChangingCoefficient> others,
 }  // namespace
 
 void tell_changes(const ModelFit& stated, const ModelFit& fit, const std::optional<ModelFit>& with,
-                  Diagnosis& result) {
+                  const ScoreTest& about, Diagnosis& result) {
   constexpr double kAsMuch = 0.8;  // of what is missing
-  const auto of = [&result](const ModelFit& one) {
-    return changing_coefficients(*one.state, ScoreTest(*one.state),
-                                 std::min(kChangeLevel, result.level));
+  const double level = std::min(kChangeLevel, result.level);
+  const auto of = [level](const ModelFit& one) {
+    return changing_coefficients(*one.state, ScoreTest(*one.state), level);
   };
-  result.changing = of(with ? *with : fit);
+  result.changing = changing_coefficients(with ? *with->state : *fit.state, about, level);
   double courses = 0.0;
   double others = 0.0;
   for (const Finding& one : result.findings) {
     if (one.joint.empty()) continue;
-    (goes_with_time(one.effect) ? courses : others) += one.score;
+    (goes_with_only(one.effect, {"t", "distance"}) ? courses : others) += one.score;
   }
   const auto as_much = [&](std::vector<ChangingCoefficient> found) {
     std::erase_if(found, [&](const auto& one) { return one.chi2_decrease < kAsMuch * courses; });

@@ -5,6 +5,7 @@
 // estimated.
 #pragma once
 
+#include "criticism/score_test.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/fit_model.hpp"
 
@@ -17,8 +18,8 @@ namespace trussmap {
 /// that was estimated may hold a part of a change: whether there is one is asked beside it, what it
 /// is beside the noise that the model states.
 /// A change in a model that lacks nothing makes the verdict an unexplained misfit. `stated`: the
-/// fit by the model's noise.
+/// fit by the model's noise; `about`: the tests of the fit with what is missing, or of `fit`.
 void tell_changes(const ModelFit& stated, const ModelFit& fit, const std::optional<ModelFit>& with,
-                  Diagnosis& result);
+                  const ScoreTest& about, Diagnosis& result);
 
 }  // namespace trussmap

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/diagnosed_places.hpp"
 
+#include "criticism/driven_variables.hpp"
 #include "criticism/place_fields.hpp"
 #include "criticism/place_scores.hpp"
 #include "criticism/refits.hpp"
-#include "criticism/score_test.hpp"
 #include "fit/fit_state.hpp"
 
 #include <algorithm>
@@ -13,15 +13,6 @@
 
 namespace trussmap {
 namespace {
-
-/// Whether an effect is a matter of the place alone, as a field is.
-bool goes_with_place(const Effect& effect) {
-  return std::ranges::all_of(effect.shape, [](const Shape& one) {
-    return !one.variables().empty() && std::ranges::all_of(one.variables(), [](const auto& name) {
-      return name == "x" || name == "y";
-    });
-  });
-}
 
 /// What is missing, as a field would meet it.
 struct MissingByPlace {
@@ -37,7 +28,7 @@ MissingByPlace missing_by_place(const Diagnosis& result) {
     if (one.joint.empty()) continue;
     Effect effect = one.effect;
     effect.coefficients.clear();
-    if (!goes_with_place(effect)) {
+    if (!goes_with_only(effect, {"x", "y"})) {
       found.others.push_back(std::move(effect));
     } else if (effect.shape.size() <= kFew && !effect.per_session) {
       found.patches.push_back(std::move(effect));
@@ -48,16 +39,17 @@ MissingByPlace missing_by_place(const Diagnosis& result) {
   return found;
 }
 
-std::vector<FieldOfPlaces> fields_of(const ModelFit& fit, const std::vector<Effect>& patches,
-                                     double level) {
-  const auto scores = place_scores(*fit.state, ScoreTest(*fit.state), patches);
+std::vector<FieldOfPlaces> fields_of(const FitState& fit, const ScoreTest& tests,
+                                     const std::vector<Effect>& patches, double level) {
+  const auto scores = place_scores(fit, tests, patches);
   return scores ? place_fields(*scores, level) : std::vector<FieldOfPlaces>();
 }
 
 }  // namespace
 
 void tell_places(const std::vector<DrivenRecording>& recordings, const ModelFit& stated,
-                 const ModelFit& fit, const std::optional<ModelFit>& with, Diagnosis& result) {
+                 const ModelFit& fit, const std::optional<ModelFit>& with, const ScoreTest& about,
+                 Diagnosis& result) {
   const double level = std::min(kFieldLevel, result.level);
   const MissingByPlace missing = missing_by_place(result);
   const bool by_place = missing.curves || !missing.patches.empty();
@@ -66,11 +58,15 @@ void tell_places(const std::vector<DrivenRecording>& recordings, const ModelFit&
     between = if_fitted_with(recordings, fit, missing.others);
     if (!between) return;
   }
-  const ModelFit& asked = between ? *between : !by_place && with ? *with : fit;
-  result.places = fields_of(asked, missing.patches, level);
+  const ModelFit& beside_all = with ? *with : fit;
+  const auto fields = [&](const ModelFit& one) {
+    return fields_of(*one.state, &one == &beside_all ? about : ScoreTest(*one.state),
+                     missing.patches, level);
+  };
+  result.places = fields(between ? *between : by_place ? fit : beside_all);
   if (!result.places.empty() && missing.others.empty() &&
       !(stated.model.noise == fit.model.noise)) {
-    for (FieldOfPlaces& plain : fields_of(stated, missing.patches, level)) {
+    for (FieldOfPlaces& plain : fields(stated)) {
       const auto same = std::ranges::find(result.places, plain.channel, &FieldOfPlaces::channel);
       if (same != result.places.end()) *same = std::move(plain);
     }

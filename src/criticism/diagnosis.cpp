@@ -348,16 +348,17 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
         {stated, static_cast<double>(run.result.tried), options.level, as_stated});
     if (defended.otherwise) judge_by(std::move(*defended.otherwise));
   }
-  explain(run.result, run.searched, under->fit, with);
+  const ScoreTest about(with ? *with->state : *under->fit.state);
+  explain(run.result, run.searched, under->fit, with, about);
   if (missing.empty() || with) {
-    tell_changes(fit, under->fit, with, run.result);
-    tell_places(recordings, fit, under->fit, with, run.result);
+    tell_changes(fit, under->fit, with, about, run.result);
+    tell_places(recordings, fit, under->fit, with, about, run.result);
   }
   const Noise& asked_of = options.estimate_noise ? stated : fit.model.noise;
   FitAnswers answers;
   bool answered = under->noise.changed();  // the noise is not the model's any more
   if (!missing.empty()) {
-    RemainingErrors rest = remaining_errors(recordings, under->fit, with, asked_of, missing);
+    RemainingErrors rest = remaining_errors(recordings, under->fit, with, about, asked_of, missing);
     run.result.events = std::move(rest.events);
     run.result.noise = std::move(rest.noise);
     if (rest.fitted) answers.left_out_with_missing = rest.left_out;

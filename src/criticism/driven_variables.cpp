@@ -63,6 +63,15 @@ std::vector<std::string> covariates_of(const ShapeContext& context) {
   return names;
 }
 
+bool goes_with_only(const Effect& effect, const std::vector<std::string>& names) {
+  return std::ranges::all_of(effect.shape, [&names](const Shape& one) {
+    const std::vector<std::string>& own = one.variables();
+    return !own.empty() && std::ranges::all_of(own, [&names](const std::string& name) {
+      return std::ranges::find(names, name) != names.end();
+    });
+  });
+}
+
 Area driven_area(const FitState& fit) {
   constexpr int kAcross = 8;
   Area area;

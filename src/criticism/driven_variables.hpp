@@ -36,6 +36,9 @@ struct Spread {
 /// Covariates that all sessions have.
 [[nodiscard]] std::vector<std::string> covariates_of(const ShapeContext& context);
 
+/// Whether an effect is a matter of these variables alone; a constant is a matter of none.
+[[nodiscard]] bool goes_with_only(const Effect& effect, const std::vector<std::string>& names);
+
 struct Area {
   Vector2 low = Vector2(1e300, 1e300);
   Vector2 high = Vector2(-1e300, -1e300);

@@ -391,7 +391,7 @@ void allow_what_is_likely(Diagnosis& diagnosis) {
 }  // namespace
 
 void explain(Diagnosis& diagnosis, const SearchedEffects& searched, const ModelFit& fit,
-             const std::optional<ModelFit>& with) {
+             const std::optional<ModelFit>& with, const ScoreTest& about) {
   constexpr double kFirstOrder = 3.0;  // chi^2/dof
   const std::vector<NamedEffect> named = named_in(diagnosis, searched);
   if (named.empty()) return;
@@ -401,7 +401,6 @@ void explain(Diagnosis& diagnosis, const SearchedEffects& searched, const ModelF
   for (std::size_t k = fit.effects.size(); with && k < with->effects.size(); ++k) {
     added.push_back(with->effects[k].effect);
   }
-  const ScoreTest about(with ? *with->state : *fit.state);
   ScoreTest tests = with ? about.lacking(fit.effects.size(), added) : about;
   tests.condition_on(searched.events);
   std::vector<Tested> tested = searched.tested;

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "criticism/diagnosis.hpp"
+#include "criticism/score_test.hpp"
 #include "criticism/weighed_sets.hpp"
 #include "trussmap/diagnose.hpp"
 
@@ -41,9 +42,9 @@ struct NamedEffect {
 /// Gives a diagnosis its explanations, about the fit with what is missing where there is one: rows
 /// are linear there; none where even with that chi^2 is thrice its degrees of freedom, for then the
 /// larger effects come first. What may be part of an explanation is not called absent. `fit`:
-/// without.
+/// without; `about`: the tests of the fit with it, or without where there is none.
 void explain(Diagnosis& diagnosis, const SearchedEffects& searched, const ModelFit& fit,
-             const std::optional<ModelFit>& with);
+             const std::optional<ModelFit>& with, const ScoreTest& about);
 
 /// Effects that belong to every set, put before the others.
 void put_before(Explanations& explanations, const std::vector<ExplainingEffect>& certain);

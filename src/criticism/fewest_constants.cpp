@@ -63,10 +63,8 @@ std::optional<ModelFit> with_one_wheel(const std::vector<DrivenRecording>& recor
   }
   if (ratio == 0.0 || fit.model.effects.size() - effects.size() < 2) return std::nullopt;
   const bool right = ratio * motion > 0.0;
-  effects.push_back({right ? "right wheel" : "left wheel",
-                     right ? Channel::right : Channel::left,
-                     {"1"},
-                     {right ? ratio : -ratio}});
+  effects.push_back(right ? wheel_of_other_size(Channel::right, ratio)
+                          : wheel_of_other_size(Channel::left, -ratio));
   std::optional<ModelFit> one = refit_by(recordings, fit, std::move(effects));
   if (!one || !does_as_well(*one, fit)) return std::nullopt;
   return one;
@@ -88,12 +86,16 @@ ModelFit with_each_wheel(const std::vector<DrivenRecording>& recordings, const M
   }
   const double half = 0.5 * ratio->coefficients.front();
   const double both = scale->coefficients.front();
-  *ratio = {"left wheel", Channel::left, {"1"}, {both - half}};
-  *scale = {"right wheel", Channel::right, {"1"}, {both + half}};
+  *ratio = wheel_of_other_size(Channel::left, both - half);
+  *scale = wheel_of_other_size(Channel::right, both + half);
   return refit_by(recordings, fit, std::move(effects)).value_or(fit);
 }
 
 }  // namespace
+
+Effect wheel_of_other_size(Channel wheel, double g) {
+  return {wheel == Channel::left ? "left wheel" : "right wheel", wheel, {"1"}, {g}};
+}
 
 ModelFit with_fewest(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                      std::size_t first) {

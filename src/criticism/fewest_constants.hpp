@@ -15,6 +15,9 @@
 
 namespace trussmap {
 
+/// A wheel (left or right) that is by a share g larger than stated.
+[[nodiscard]] Effect wheel_of_other_size(Channel wheel, double g);
+
 /// The fit with these in place of its effects from `first` on, where it does as well with them.
 [[nodiscard]] ModelFit with_fewest(const std::vector<DrivenRecording>& recordings,
                                    const ModelFit& fit, std::size_t first);

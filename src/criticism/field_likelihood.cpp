@@ -160,10 +160,14 @@ FieldLikelihood likelihood_of(const ScoresBeside& one, const FieldPriors& priors
   return result;
 }
 
-double chance_of(const ScoresBeside& one, const Eigen::MatrixXd& R, double phi) {
+double FieldForm::chance(double phi) const {
+  return quadratic_form_p_value(value / phi, weights);
+}
+
+FieldForm form_of(const ScoresBeside& one, const Eigen::MatrixXd& R) {
   const Eigen::MatrixXd root = triangle_of(R);
   const Eigen::VectorXd weights = symmetric_modes(root.transpose() * one.G * root).eigenvalues;
-  return quadratic_form_p_value(one.s.dot(R * one.s) / phi, {weights.begin(), weights.end()});
+  return {one.s.dot(R * one.s), {weights.begin(), weights.end()}};
 }
 
 bool may_be_there(const ScoresBeside& one, const Eigen::MatrixXd& R) {

@@ -71,8 +71,15 @@ struct FieldLikelihood {
 
 [[nodiscard]] FieldLikelihood likelihood_of(const ScoresBeside& one, const FieldPriors& priors);
 
-/// How likely noise of dispersion phi makes s'Rs as large.
-[[nodiscard]] double chance_of(const ScoresBeside& one, const Eigen::MatrixXd& R, double phi);
+/// s'Rs, a quadratic form in normal errors where nothing is there.
+struct FieldForm {
+  double value = 0.0;
+  std::vector<double> weights;  ///< of chi^2 with one degree of freedom each
+
+  /// How likely noise of dispersion phi makes it as large.
+  [[nodiscard]] double chance(double phi) const;
+};
+[[nodiscard]] FieldForm form_of(const ScoresBeside& one, const Eigen::MatrixXd& R);
 
 /// Whether that may be below 0.01 at all, by its mean and variance: quick.
 [[nodiscard]] bool may_be_there(const ScoresBeside& one, const Eigen::MatrixXd& R);

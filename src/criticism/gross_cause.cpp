@@ -4,6 +4,7 @@
 
 #include "criticism/candidates.hpp"
 #include "criticism/effect_strength.hpp"
+#include "criticism/fewest_constants.hpp"
 #include "criticism/refits.hpp"
 #include "criticism/score_test.hpp"
 #include "effects/steering.hpp"
@@ -78,8 +79,8 @@ std::vector<Effect> wrong_signs(const Robot& robot) {
   constexpr double kOther = -2.0;
   std::vector<Effect> result{catalogue_effect("wheelbase", {kOther})};
   if (robot.drive == DriveKind::differential) {
-    result.push_back({"left wheel", Channel::left, {"1"}, {kOther}});
-    result.push_back({"right wheel", Channel::right, {"1"}, {kOther}});
+    result.push_back(wheel_of_other_size(Channel::left, kOther));
+    result.push_back(wheel_of_other_size(Channel::right, kOther));
   }
   result.push_back(catalogue_effect("wheel scale", {kOther}));
   return result;

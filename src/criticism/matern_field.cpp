@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/matern_field.hpp"
 
+#include "geometry/index.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,7 +22,7 @@ double kappa_of(double length) {
 SparseMatrix matern_operator(const SquareGrid& grid, double length) {
   const double own = std::pow(kappa_of(length) * grid.cell, 2);
   std::vector<Eigen::Triplet<double, int>> entries;
-  entries.reserve(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows) * 5);
+  entries.reserve(idx(grid.nodes()) * 5);
   const auto join = [&entries](int one, int other) {
     entries.emplace_back(one, one, 1.0);
     entries.emplace_back(other, other, 1.0);
@@ -28,14 +30,13 @@ SparseMatrix matern_operator(const SquareGrid& grid, double length) {
   };
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
-      const int at = row * grid.columns + column;
+      const int at = grid.index_of({column, row});
       entries.emplace_back(at, at, own);
       if (column > 0) join(at - 1, at);
       if (row > 0) join(at - grid.columns, at);
     }
   }
-  const Eigen::Index nodes = static_cast<Eigen::Index>(grid.columns) * grid.rows;
-  SparseMatrix K(nodes, nodes);
+  SparseMatrix K(grid.nodes(), grid.nodes());
   K.setFromTriplets(entries.begin(), entries.end());
   return K;
 }
@@ -53,7 +54,7 @@ Eigen::MatrixXd matern_covariance(const SquareGrid& grid, const std::vector<Grid
   factor.factorise(K);
   Eigen::MatrixXd X = Eigen::MatrixXd::Zero(K.rows(), static_cast<Eigen::Index>(nodes.size()));
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const int at = (nodes[k].row + border) * wide.columns + nodes[k].column + border;
+    const int at = wide.index_of({nodes[k].column + border, nodes[k].row + border});
     X(at, static_cast<Eigen::Index>(k)) = 1.0;
   }
   X = factor.solve(X);

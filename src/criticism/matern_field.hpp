@@ -36,6 +36,11 @@ struct SquareGrid {
   int columns = 0;
   int rows = 0;
 
+  [[nodiscard]] int nodes() const { return columns * rows; }
+  /// Row by row.
+  [[nodiscard]] int index_of(const GridNode& node) const {
+    return node.row * columns + node.column;
+  }
   [[nodiscard]] Vector2 place_of(const GridNode& node) const {
     return low + cell * Vector2(node.column, node.row);
   }

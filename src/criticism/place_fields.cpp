@@ -129,10 +129,11 @@ class FieldSearch {
   [[nodiscard]] std::optional<FoundField> tested(const ScoresBeside& one, std::size_t channel,
                                                  double tried) const {
     if (!may_be_there(one, R_)) return std::nullopt;
-    if (!(chance_of(one, R_, 1.0) * tried < level_)) return std::nullopt;
+    const FieldForm form = form_of(one, R_);
+    if (!(form.chance(1.0) * tried < level_)) return std::nullopt;
     const FieldSize likeliest = likelihood_of(one, priors()).likeliest;
     if (!(likeliest.sigma > 0.0)) return std::nullopt;
-    const double p_value = chance_of(one, R_, likeliest.phi) * tried;
+    const double p_value = form.chance(likeliest.phi) * tried;
     if (!(p_value < level_)) return std::nullopt;
     return FoundField{channel, p_value, likeliest, {}};
   }
@@ -158,9 +159,9 @@ class FieldSearch {
   }
 
   /// Whether the channel's own patches explain as much as its field does.
-  [[nodiscard]] bool are_patches(std::size_t channel, double gain) const {
+  [[nodiscard]] bool are_patches(std::size_t channel, const ScoresBeside& without,
+                                 double gain) const {
     if (own_[channel].empty()) return false;
-    const ScoresBeside without = of_channel(channel);
     const ScoresBeside with = of_channel(channel, true);
     if (!tested(with, channel, 1.0)) return true;
     const double each = std::log(std::max(2.0, without.dof));
@@ -186,7 +187,7 @@ class FieldSearch {
     }
     field.length = priors().lengths[likelihood.likeliest.length];
     field.chi2_decrease = likelihood.likeliest.phi * likelihood.likeliest.gain;
-    if (are_patches(found.channel, likelihood.likeliest.gain)) {
+    if (are_patches(found.channel, one, likelihood.likeliest.gain)) {
       for (const std::size_t k : own_[found.channel]) {
         field.patches.push_back(scores_.patches[k].name);
       }
@@ -240,12 +241,11 @@ class FieldSearch {
     field.cell = grid.cell;
     field.columns = grid.columns;
     field.rows = grid.rows;
-    const std::size_t cells = idx(grid.columns) * idx(grid.rows);
-    field.mean.assign(cells, std::numeric_limits<double>::quiet_NaN());
+    field.mean.assign(idx(grid.nodes()), std::numeric_limits<double>::quiet_NaN());
     field.sd = field.mean;
     for (std::size_t k = 0; k < scores_.nodes.size(); ++k) {
       if (!scores_.visited[k]) continue;
-      const std::size_t at = idx(scores_.nodes[k].row * grid.columns + scores_.nodes[k].column);
+      const std::size_t at = idx(grid.index_of(scores_.nodes[k]));
       field.mean[at] = mean[static_cast<Eigen::Index>(k)];
       field.sd[at] = sd[static_cast<Eigen::Index>(k)];
     }
@@ -261,6 +261,25 @@ class FieldSearch {
 };
 
 }  // namespace
+
+std::vector<FieldCell> FieldOfPlaces::cells_driven() const {
+  std::vector<FieldCell> cells;
+  std::size_t at = 0;
+  for (int along_y = 0; along_y < rows; ++along_y) {
+    for (int column = 0; column < columns; ++column, ++at) {
+      if (std::isnan(mean[at])) continue;
+      cells.push_back(
+          {column, along_y, Vector2(x, y) + cell * Vector2(column, along_y), mean[at], sd[at]});
+    }
+  }
+  return cells;
+}
+
+double FieldOfPlaces::most() const {
+  double largest = 0.0;
+  for (const FieldCell& one : cells_driven()) largest = std::max(largest, std::abs(one.mean));
+  return largest;
+}
 
 std::vector<FieldOfPlaces> place_fields(const PlaceScores& scores, double level) {
   return FieldSearch(scores, level).run();

@@ -45,7 +45,7 @@ RowShares shares_at(const SquareGrid& grid, const Vector2& place) {
   const int up = grid.rows > 1 ? grid.columns : 0;
   const double a = u - column;
   const double b = v - row;
-  const int first = row * grid.columns + column;
+  const int first = grid.index_of({column, row});
   return {{first, first + right, first + up, first + right + up},
           {(1.0 - a) * (1.0 - b), a * (1.0 - b), (1.0 - a) * b, a * b}};
 }
@@ -82,7 +82,7 @@ std::vector<Vector2> places_driven(const ShapeContext& context, double apart) {
 
 /// Nodes at the corners of the squares that these are in.
 std::size_t nodes_about(const SquareGrid& grid, const std::vector<Vector2>& places) {
-  std::vector<std::uint8_t> near(idx(grid.columns) * idx(grid.rows), 0);
+  std::vector<std::uint8_t> near(idx(grid.nodes()), 0);
   for (const Vector2& place : places) {
     const RowShares about = shares_at(grid, place);
     for (std::size_t c = 0; c < 4; ++c) {
@@ -107,7 +107,7 @@ struct WayNear {
 };
 
 WayNear way_near(const SquareGrid& grid, const SharedRows& shares, const ShapeContext& context) {
-  const std::size_t nodes = idx(grid.columns) * idx(grid.rows);
+  const std::size_t nodes = idx(grid.nodes());
   WayNear way{std::vector<double>(nodes, 0.0), std::vector<double>(nodes, 0.0)};
   for (std::size_t s = 0; s < shares.size(); ++s) {
     const std::vector<double>& distance = context.variables(s, Instant::middle).at("distance");
@@ -146,10 +146,9 @@ void take_nodes(const WayNear& way, PlaceScores& scores) {
 
 /// The same shares among the nodes that are kept: of others a row has none.
 SharedRows among_kept(SharedRows shares, const PlaceScores& scores) {
-  std::vector<int> place(idx(scores.grid.columns) * idx(scores.grid.rows), -1);
+  std::vector<int> place(idx(scores.grid.nodes()), -1);
   for (std::size_t k = 0; k < scores.nodes.size(); ++k) {
-    const GridNode& node = scores.nodes[k];
-    place[idx(node.row * scores.grid.columns + node.column)] = static_cast<int>(k);
+    place[idx(scores.grid.index_of(scores.nodes[k]))] = static_cast<int>(k);
   }
   for (std::vector<RowShares>& session : shares) {
     for (RowShares& row : session) {

@@ -5,7 +5,6 @@
 #include "criticism/event_tests.hpp"
 #include "criticism/noise_tests.hpp"
 #include "criticism/refits.hpp"
-#include "criticism/score_test.hpp"
 #include "fit/fit_state.hpp"
 #include "linalg/dense.hpp"
 
@@ -42,19 +41,19 @@ Asked with_noise_as(const std::vector<DrivenRecording>& recordings, const Noise&
 
 RemainingErrors remaining_errors(const std::vector<DrivenRecording>& recordings,
                                  const ModelFit& fit, const std::optional<ModelFit>& with,
-                                 const Noise& stated, const std::vector<Effect>& missing) {
+                                 const ScoreTest& about, const Noise& stated,
+                                 const std::vector<Effect>& missing) {
   RemainingErrors result;
   const Asked asked = with ? Asked{*with, {}} : Asked{fit, missing};
   result.fitted = asked.beside.empty();
   result.left_out = asked.fit.left_out.size();
   result.p_value = asked.fit.p_value;
-  const ScoreTest tests(*asked.fit.state);
-  const Eigen::MatrixXd nuisance = asked.nuisance(tests);
-  std::vector<TestedEvent> events = test_events(*asked.fit.state, tests, nuisance);
+  const Eigen::MatrixXd nuisance = asked.nuisance(about);
+  std::vector<TestedEvent> events = test_events(*asked.fit.state, about, nuisance);
   result.events.assign(std::make_move_iterator(events.begin()),
                        std::make_move_iterator(events.end()));
   result.noise = asked.fit.model.noise == stated
-                     ? test_noise_laws(*asked.fit.state, tests, nuisance)
+                     ? test_noise_laws(*asked.fit.state, about, nuisance)
                      : laws_of(with_noise_as(recordings, stated, asked));
   return result;
 }

@@ -6,6 +6,7 @@
 // for noise, and what contradicts a model without it may well fit then.
 #pragma once
 
+#include "criticism/score_test.hpp"
 #include "trussmap/diagnose.hpp"
 
 #include <cstddef>
@@ -23,13 +24,13 @@ struct RemainingErrors {
 };
 
 /// `fit` lacks `missing`, whose places and thresholds are known, and which are in the fit `with`
-/// (if_fitted_with, refits.hpp); `stated`: the noise that the user's model has. Where they cannot
-/// be fitted together, all is asked of the fit as it is, less what their columns explain. Throws as
-/// refit does.
+/// (if_fitted_with, refits.hpp); `about`: the tests of that, or of `fit` where there is none;
+/// `stated`: the noise that the user's model has. Where they cannot be fitted together, all is
+/// asked of the fit as it is, less what their columns explain. Throws as refit does.
 [[nodiscard]] RemainingErrors remaining_errors(const std::vector<DrivenRecording>& recordings,
                                                const ModelFit& fit,
                                                const std::optional<ModelFit>& with,
-                                               const Noise& stated,
+                                               const ScoreTest& about, const Noise& stated,
                                                const std::vector<Effect>& missing);
 
 /// The laws of noise alone, of a fit that lacks nothing.

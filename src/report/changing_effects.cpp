@@ -82,26 +82,14 @@ std::string changing_text(const Diagnosis& diagnosis) {
   return text;
 }
 
-std::vector<std::string> changing_sentences(const Diagnosis& diagnosis) {
-  std::vector<std::string> sentences;
-  sentences.reserve(diagnosis.changing.size());
-  for (const ChangingCoefficient& one : diagnosis.changing) {
-    sentences.push_back(typeset(capitalised(in_words(one)) + "."));
-  }
-  return sentences;
-}
-
 void add_changes(const Diagnosis& diagnosis, PageContent& page) {
   if (diagnosis.changing.empty()) return;
-  PageSection section{"What changes while driving", {}};
-  for (std::string& one : changing_sentences(diagnosis))
-    section.blocks.emplace_back(std::move(one));
   ChartRow charts;
   for (const ChangingCoefficient& one : diagnosis.changing) {
     charts.push_back(course_chart(one, charts.size()));
   }
-  section.blocks.emplace_back(std::move(charts));
-  page.sections.push_back(std::move(section));
+  page.sections.push_back(told_section("What changes while driving",
+                                       sentences_of(diagnosis.changing), std::move(charts)));
 }
 
 }  // namespace trussmap

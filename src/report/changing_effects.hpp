@@ -8,17 +8,13 @@
 #include "trussmap/diagnose.hpp"
 
 #include <string>
-#include <vector>
 
 namespace trussmap {
 
 /// A line each; empty where none changes.
 [[nodiscard]] std::string changing_text(const Diagnosis& diagnosis);
 
-/// A sentence each, as a page has it.
-[[nodiscard]] std::vector<std::string> changing_sentences(const Diagnosis& diagnosis);
-
-/// Those, and a chart of each one's course, with its 95 % band; none where none changes.
+/// A sentence and a chart of each one's course, with its 95 % band; none where none changes.
 void add_changes(const Diagnosis& diagnosis, PageContent& page);
 
 }  // namespace trussmap

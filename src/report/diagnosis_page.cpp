@@ -97,8 +97,9 @@ ResultRows missing_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& evi
       rows.otherwise.push_back(std::move(sentence));
     }
   }
-  for (std::string& one : changing_sentences(diagnosis)) rows.otherwise.push_back(std::move(one));
-  for (std::string& one : place_sentences(diagnosis)) rows.otherwise.push_back(std::move(one));
+  for (std::string& one : sentences_of(diagnosis.changing))
+    rows.otherwise.push_back(std::move(one));
+  for (std::string& one : sentences_of(diagnosis.places)) rows.otherwise.push_back(std::move(one));
   if (diagnosis.next_drive) {
     rows.next.push_back("To tell them apart, " + in_words(diagnosis.next_drive) + ".");
   }
@@ -161,7 +162,7 @@ ResultRows changing_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& ev
   ResultRows rows;
   const ChangingCoefficient& first = diagnosis.changing.front();
   rows.missing = {capitalised(objection_in_words(diagnosis, evidence.given.comparison)) + "."};
-  rows.large = changing_sentences(diagnosis);
+  rows.large = sentences_of(diagnosis.changing);
   rows.sure = {
       fmt::format("Were it the same all the time, noise would show as much with "
                   "probability {}.",
@@ -178,7 +179,7 @@ ResultRows changing_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& ev
 ResultRows place_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
   ResultRows rows;
   rows.missing = {capitalised(objection_in_words(diagnosis, evidence.given.comparison)) + "."};
-  rows.large = place_sentences(diagnosis);
+  rows.large = sentences_of(diagnosis.places);
   rows.sure = {
       fmt::format("Were it the same everywhere, noise would show as much with probability {}.",
                   chance_text(diagnosis.places.front().p_value))};

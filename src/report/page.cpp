@@ -210,6 +210,13 @@ std::string foot(const PageContent& page) {
 
 }  // namespace
 
+PageSection told_section(std::string title, std::vector<std::string> sentences, ChartRow charts) {
+  PageSection section{std::move(title), {}};
+  for (std::string& one : sentences) section.blocks.emplace_back(std::move(one));
+  section.blocks.emplace_back(std::move(charts));
+  return section;
+}
+
 std::vector<const Chart*> charts_of(const PageContent& page) {
   std::vector<const Chart*> charts;
   for (const PageSection& section : page.sections) {

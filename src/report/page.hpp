@@ -55,6 +55,10 @@ struct PageSection {
   std::vector<PageBlock> details = {};  ///< below, closed until asked for
 };
 
+/// Sentences, and charts below them.
+[[nodiscard]] PageSection told_section(std::string title, std::vector<std::string> sentences,
+                                       ChartRow charts);
+
 struct PageContent {
   std::string command;  ///< "compare"
   std::string subject;  ///< what of: recordings, model

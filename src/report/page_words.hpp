@@ -23,6 +23,15 @@ namespace trussmap {
 [[nodiscard]] std::string listed(const std::vector<std::string>& names,
                                  const std::string& last = "and");
 
+/// A sentence of each one's words (in_words).
+template <class Told>
+[[nodiscard]] std::vector<std::string> sentences_of(const std::vector<Told>& all) {
+  std::vector<std::string> sentences;
+  sentences.reserve(all.size());
+  for (const Told& one : all) sentences.push_back(typeset(capitalised(in_words(one)) + "."));
+  return sentences;
+}
+
 /// "16 mm", "21 cm", "1.3 m". With `beside`, in the unit that suits the larger of the two.
 [[nodiscard]] std::string distance_text(double metres, double beside = 0.0);
 

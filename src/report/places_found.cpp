@@ -32,26 +32,20 @@ ChartLayer cells_layer(const FieldOfPlaces& field, const ShownUnit& unit, double
                     {fmt::format("value [{}]", unit.name)},
                     {fmt::format("standard error [{}]", unit.name)}}};
   layer.size = (known ? 0.45 : 0.2) * scale;
-  for (int row = 0; row < field.rows; ++row) {
-    for (int column = 0; column < field.columns; ++column) {
-      const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(field.columns) +
-                      static_cast<std::size_t>(column);
-      if (std::isnan(field.mean[at]) || (field.sd[at] < kKnown * field.size) != known) continue;
-      layer.columns[0].numbers.push_back(field.x + field.cell * column);
-      layer.columns[1].numbers.push_back(field.y + field.cell * row);
-      layer.columns[2].numbers.push_back(unit.factor * field.mean[at]);
-      layer.columns[3].numbers.push_back(unit.factor * field.sd[at]);
-      layer.shade.push_back(field.mean[at] / most);
-    }
+  for (const FieldCell& one : field.cells_driven()) {
+    if ((one.sd < kKnown * field.size) != known) continue;
+    layer.columns[0].numbers.push_back(one.centre.x());
+    layer.columns[1].numbers.push_back(one.centre.y());
+    layer.columns[2].numbers.push_back(unit.factor * one.mean);
+    layer.columns[3].numbers.push_back(unit.factor * one.sd);
+    layer.shade.push_back(one.mean / most);
   }
   return layer;
 }
 
 Chart field_chart(const FieldOfPlaces& field) {
   const ShownUnit unit = shown_unit(std::string(facts_of(field.channel).unit));
-  double most = 0.0;
-  for (const double one : field.mean) most = std::isnan(one) ? most : std::max(most, std::abs(one));
-  most = std::max(most, 1e-300);
+  const double most = std::max(field.most(), 1e-300);
   Chart chart;
   chart.id = fmt::format("places-{}", name_of(field.channel));
   chart.title = capitalised(field_in_words(field.channel));
@@ -86,23 +80,12 @@ std::string places_text(const Diagnosis& diagnosis) {
   return text;
 }
 
-std::vector<std::string> place_sentences(const Diagnosis& diagnosis) {
-  std::vector<std::string> sentences;
-  sentences.reserve(diagnosis.places.size());
-  for (const FieldOfPlaces& one : diagnosis.places) {
-    sentences.push_back(typeset(capitalised(in_words(one)) + "."));
-  }
-  return sentences;
-}
-
 void add_places(const Diagnosis& diagnosis, PageContent& page) {
   if (diagnosis.places.empty()) return;
-  PageSection section{"What differs from place to place", {}};
-  for (std::string& one : place_sentences(diagnosis)) section.blocks.emplace_back(std::move(one));
   ChartRow charts;
   for (const FieldOfPlaces& one : diagnosis.places) charts.push_back(field_chart(one));
-  section.blocks.emplace_back(std::move(charts));
-  page.sections.push_back(std::move(section));
+  page.sections.push_back(told_section("What differs from place to place",
+                                       sentences_of(diagnosis.places), std::move(charts)));
 }
 
 }  // namespace trussmap

@@ -8,17 +8,13 @@
 #include "trussmap/diagnose.hpp"
 
 #include <string>
-#include <vector>
 
 namespace trussmap {
 
 /// A line each; empty where none differs.
 [[nodiscard]] std::string places_text(const Diagnosis& diagnosis);
 
-/// A sentence each, as a page has it.
-[[nodiscard]] std::vector<std::string> place_sentences(const Diagnosis& diagnosis);
-
-/// Those, and a map of each; none where none differs.
+/// A sentence and a map of each; none where none differs.
 void add_places(const Diagnosis& diagnosis, PageContent& page);
 
 }  // namespace trussmap
