@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 namespace trussmap::bench {
+using namespace criticism;
 namespace {
 
 Subject subject_of(Effect effect) {

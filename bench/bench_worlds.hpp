@@ -54,10 +54,12 @@ struct Subject {
 /// Coefficients along a random direction whose expected score is `times`^2 * 24.4; empty where the
 /// world does not show the effect at a plausible size.
 [[nodiscard]] std::vector<double> sized(const Subject& subject, const World& world,
-                                        const ScoreTest& tests, double times, std::uint64_t seed);
+                                        const criticism::ScoreTest& tests, double times,
+                                        std::uint64_t seed);
 
 /// How much of one effect's trace the other's columns can show.
-[[nodiscard]] double cosine(const Effect& truth, const Effect& found, const ScoreTest& tests);
+[[nodiscard]] double cosine(const Effect& truth, const Effect& found,
+                            const criticism::ScoreTest& tests);
 
 /// Whether the world's robot has what the effect acts on.
 [[nodiscard]] bool shows(const World& world, const Subject& subject);

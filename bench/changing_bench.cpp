@@ -29,6 +29,7 @@
 #include <fmt/format.h>
 
 namespace trussmap::bench {
+using namespace criticism;
 namespace {
 
 struct Options {

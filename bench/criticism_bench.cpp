@@ -37,6 +37,7 @@
 #include <fmt/format.h>
 
 namespace trussmap::bench {
+using namespace criticism;
 namespace {
 
 using Options = CriticismOptions;

@@ -34,6 +34,7 @@
 #include <fmt/format.h>
 
 namespace trussmap::bench {
+using namespace criticism;
 namespace {
 
 constexpr double kSame = 0.95;       // cosine
@@ -167,7 +168,7 @@ double most_shown(const Eigen::VectorXd& trace, const ScoreTest& tests, const Mo
   double most = 0.0;
   visit_scores(tests, plain, Resolution::quick, [&](std::size_t, const Score& score) {
     if (score.dof == 0) return;
-    const Eigen::VectorXd shown = score.projected * least_squares(score.projected, trace);
+    const Eigen::VectorXd shown = score.projected * linalg::least_squares(score.projected, trace);
     most = std::max(most, shown.squaredNorm() / trace.squaredNorm());
   });
   return most;

@@ -128,7 +128,7 @@ std::optional<Outcome> outcome_of(const Options& options, std::size_t at, std::u
   const Robot robot;
   const SimulatedRecording clean = simulate(settings, {});
   const ModelFit fit = fit_model({with_wheels(clean.drive.recording, robot)}, clean.model);
-  const ScoreTest tests(*fit.state);
+  const criticism::ScoreTest tests(*fit.state);
   World drawn;
   drawn.seed = 7;  // of the direction, with the recording's
   hidden.effect.coefficients = sized({hidden.effect}, drawn, tests, times, seed);

@@ -32,6 +32,7 @@
 #include <fmt/format.h>
 
 namespace trussmap::bench {
+using namespace monitor;
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -243,8 +244,8 @@ std::string kind_of_leg(double turned) {
 }
 
 /// Drives until a sighting; by how much the robot turned, rad.
-double drive_until(double t, const MotionRows& drive, std::size_t& row, OnlineOdometry& odometry,
-                   LegOdometry& leg) {
+double drive_until(double t, const MotionRows& drive, std::size_t& row,
+                   fitting::OnlineOdometry& odometry, LegOdometry& leg) {
   double turned = 0.0;
   for (; row < drive.rows() && drive.t[row] <= t + 1e-9; ++row) {
     WheelRow one{drive.duration(row), drive.pair.left[row], drive.pair.right[row]};
@@ -261,7 +262,7 @@ void add_innovations(const World& world, Innovations& all) {
   const Noise& noise = world.model.noise;
   OdometryInputs inputs;
   inputs.compass = recording.drive.has_compass();
-  OnlineOdometry odometry(world.model, inputs);
+  fitting::OnlineOdometry odometry(world.model, inputs);
   LegOdometry leg({});
   LegFilter filter({}, 24, 0);
   std::map<std::string, MapPlace> survey;

@@ -137,7 +137,7 @@ void identify(const Options& options) {
         Model true_model = world.model;
         true_model.noise = true_noise(world);
         const ModelFit fit = fit_model({record_in(world, {})}, true_model);
-        const ScoreTest tests(*fit.state);
+        const criticism::ScoreTest tests(*fit.state);
         Effect truth = subject.effect;
         truth.coefficients = sized(subject, world, tests, kTimes, seed);
         if (truth.coefficients.empty()) continue;
@@ -264,8 +264,8 @@ void sizes(const Options& options) {
       ModelFit fit = fit_model(base, world.model);
       Model rough = world.model;
       law.put_into(rough.noise);
-      fit = refit(base, rough, fit);
-      const std::vector<DrivenRecording> drawn = replicated(base, *fit.state, seed);
+      fit = fitting::refit(base, rough, fit);
+      const std::vector<DrivenRecording> drawn = fitting::replicated(base, *fit.state, seed);
       const FittedNoise noise = fit_model_and_noise(drawn, world.model).noise;
       const auto found = std::find_if(noise.sources.begin(), noise.sources.end(),
                                       [&](const NoiseSource& one) { return one.name == law.name; });
@@ -313,8 +313,8 @@ void posterior(const Options& options) {
     std::map<std::string, Coverage> intervals;
     std::vector<double> p_values;
     for (int k = 0; k < options.drawn; ++k) {
-      const std::vector<DrivenRecording> drawn =
-          replicated(recordings, *found.found.state, options.first + static_cast<std::uint64_t>(k));
+      const std::vector<DrivenRecording> drawn = fitting::replicated(
+          recordings, *found.found.state, options.first + static_cast<std::uint64_t>(k));
       const ModelFit fit = fit_model(drawn, asked, discovering.diagnosis.fit);
       p_values.push_back(fit.p_value);
       for (std::size_t e = 0; e < fit.effects.size(); ++e) {

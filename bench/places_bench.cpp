@@ -37,6 +37,7 @@
 #include <fmt/format.h>
 
 namespace trussmap::bench {
+using namespace criticism;
 namespace {
 
 struct Options {
@@ -113,14 +114,14 @@ std::optional<double> noise_of(const PlaceScores& scores, Channel channel, doubl
   if (unsmoothed) {
     // The mean of all is held: it is a constant's.
     G.array() += G.diagonal().maxCoeff();
-    G = DenseLdlt(G).inverse();
+    G = linalg::DenseLdlt(G).inverse();
   } else {
     const Eigen::VectorXd variances = G.diagonal().cwiseInverse();
     G = variances.asDiagonal();
   }
   std::vector<double> errors;
   for (Eigen::Index k = 0; k < count; ++k) errors.push_back(std::sqrt(std::abs(G(k, k))));
-  return median(std::move(errors));
+  return statistics::median(std::move(errors));
 }
 
 double correlation(const std::vector<double>& a, const std::vector<double>& b) {
@@ -228,9 +229,9 @@ void run_field(Channel channel, const Options& options) {
       "{}, median {:.2f}, least {:.2f}; within 95 % bands {:.1f} %; length {:.2f} times the true "
       "one (median); {:.2f} s a diagnosis\n",
       name_of(channel), tally.told, tally.worlds, tally.patches, tally.rivals, tally.others, good,
-      tally.correlations.size(), median(tally.correlations),
+      tally.correlations.size(), statistics::median(tally.correlations),
       tally.correlations.empty() ? 0.0 : *std::ranges::min_element(tally.correlations),
-      100.0 * tally.within / std::max(1.0, tally.cells), median(tally.lengths),
+      100.0 * tally.within / std::max(1.0, tally.cells), statistics::median(tally.lengths),
       tally.seconds / std::max(1, tally.worlds));
 }
 

@@ -88,7 +88,8 @@ std::optional<Riddle> draw_riddle(std::uint64_t seed, const BenchOptions& option
   const DrivenRecording plain = record_in(world, {});
   const ModelFit fit = fit_model({plain}, world.model);
   riddle.truth = subject.effect;
-  riddle.truth.coefficients = sized(subject, world, ScoreTest(*fit.state), options.times, seed);
+  riddle.truth.coefficients =
+      sized(subject, world, criticism::ScoreTest(*fit.state), options.times, seed);
   if (riddle.truth.coefficients.empty()) return std::nullopt;
   riddle.recording = record_in(world, {riddle.truth});
   riddle.diagnosis = diagnose({riddle.recording}, world.model);

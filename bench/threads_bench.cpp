@@ -52,9 +52,9 @@ void compare_threads(const std::string& what, int rounds,
 }
 
 /// The stiffness matrix of a square grid.
-BlockSystem grid(int side) {
+linalg::BlockSystem grid(int side) {
   std::vector<Vector2> positions;
-  std::vector<NodePair> pairs;
+  std::vector<linalg::NodePair> pairs;
   for (int row = 0; row < side; ++row) {
     for (int column = 0; column < side; ++column) {
       const int node = row * side + column;
@@ -65,7 +65,8 @@ BlockSystem grid(int side) {
   }
   std::vector<int> sizes(positions.size(), 2);
   sizes[0] = 0;
-  BlockSystem K(sizes, pairs, dissection_order(positions, pairs), Kernel::frontal);
+  linalg::BlockSystem K(sizes, pairs, linalg::dissection_order(positions, pairs),
+                        linalg::Kernel::frontal);
   Matrix2 stiffness;
   stiffness << 2.0, 0.3, 0.3, 1.0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -91,7 +92,7 @@ int main(int argc, char** argv) try {
   CLI11_PARSE(app, argc, argv);
   if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
   {
-    BlockSystem K = grid(side);
+    linalg::BlockSystem K = grid(side);
     compare_threads(fmt::format("factorisation of a grid {0} x {0}", side), rounds, [&K] {
       K.factorise();
       return fmt::format("{:a}", K.log_determinant());

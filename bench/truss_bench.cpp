@@ -40,6 +40,8 @@
 #include <fmt/format.h>
 
 namespace trussmap::bench {
+using namespace truss;
+using namespace linalg;
 namespace {
 
 struct Structure {

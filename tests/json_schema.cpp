@@ -88,7 +88,7 @@ void find_undescribed(const json& value, const json& schema, const std::string& 
   if (value.is_array()) {
     const json items = first_with([](const json& one) { return one.value("items", json()); });
     for (std::size_t k = 0; k < value.size() && !items.is_null(); ++k) {
-      find_undescribed(value[k], items, joined(at, "/", k), found);
+      find_undescribed(value[k], items, text::joined(at, "/", k), found);
     }
   }
   if (!value.is_object()) return;
@@ -98,9 +98,9 @@ void find_undescribed(const json& value, const json& schema, const std::string& 
           .value(key, one.value("additionalProperties", json()));
     });
     if (member.is_null())
-      found.push_back(joined(at, "/", key, " is not in the schema"));
+      found.push_back(text::joined(at, "/", key, " is not in the schema"));
     else
-      find_undescribed(each, member, joined(at, "/", key), found);
+      find_undescribed(each, member, text::joined(at, "/", key), found);
   }
 }
 

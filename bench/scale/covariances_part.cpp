@@ -23,6 +23,7 @@
 #include <fmt/format.h>
 
 namespace trussmap::bench {
+using namespace linalg;
 namespace {
 
 struct Work {

@@ -13,6 +13,8 @@
 #include <fmt/format.h>
 
 namespace trussmap::bench {
+using namespace truss;
+using namespace linalg;
 namespace {
 
 double chi_squared(const Grid& grid, const std::vector<Vector2>& positions) {

@@ -175,7 +175,7 @@ void increments_part(int side) {
                         route.displacement;
     chi2 += route.traversals * off.dot(route.covariance.inverse() * off);
   }
-  const LinearAdjustment batch = adjust_linear(map);
+  const map::LinearAdjustment batch = map::adjust_linear(map);
   fmt::print("  chi2 {:.12g}, batch {:.12g}\n", chi2, batch.chi2);
   verdict("mean step, ms", mean, 0.6);
   verdict("difference of chi2 from the batch, relative, 1e-9",

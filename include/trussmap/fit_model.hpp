@@ -70,8 +70,10 @@ struct FittedLandmark {
   std::optional<Vector2> survey = std::nullopt;  ///< m, where surveyed
 };
 
+namespace fitting {
 /// All that the fit knows, for the library's own use.
 struct FitState;
+}
 
 struct ModelFit {
   Model model;  ///< effects with channel, shape and the coefficients found
@@ -85,7 +87,7 @@ struct ModelFit {
   bool settled = true;   ///< shapes and path agree
   std::vector<std::string> left_out;  ///< sightings, fixes and loops that the gate left out
   std::vector<std::string> warnings;
-  std::shared_ptr<const FitState> state;
+  std::shared_ptr<const fitting::FitState> state;
 };
 
 /// Throws SolveError where something cannot be determined (a landmark, a pose, sessions that

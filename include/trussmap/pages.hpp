@@ -30,6 +30,10 @@
 
 namespace trussmap {
 
+namespace report {
+struct PageContent;
+}
+
 struct BuiltMap;
 struct ComparisonEvidence;
 struct Diagnosis;
@@ -38,7 +42,6 @@ struct Discovery;
 struct DiscoveryEvidence;
 struct FitEvidence;
 struct FleetReport;
-struct PageContent;
 struct RobotConstants;
 struct TourMap;
 struct TourResult;
@@ -50,11 +53,11 @@ struct WorkbenchLog;
 class Page {
  public:
   /// For the library's own use, as `content`.
-  Page(PageContent content);  // NOLINT(google-explicit-constructor)
-  [[nodiscard]] const PageContent& content() const { return *content_; }
+  Page(report::PageContent content);  // NOLINT(google-explicit-constructor)
+  [[nodiscard]] const report::PageContent& content() const { return *content_; }
 
  private:
-  std::shared_ptr<const PageContent> content_;
+  std::shared_ptr<const report::PageContent> content_;
 };
 
 /// What makes the charts live (src/report/page): a style sheet, and a script with the chart

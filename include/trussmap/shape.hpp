@@ -27,6 +27,10 @@
 
 namespace trussmap {
 
+namespace effects {
+class CompiledShape;
+}
+
 /// A number inside a shape that no coefficient scales: a place, a radius, a threshold, a time.
 struct ShapeParameter {
   std::string name;  ///< "{name}" in a pattern; in a shape as Shape::parameters has it
@@ -34,8 +38,6 @@ struct ShapeParameter {
 
   friend bool operator==(const ShapeParameter&, const ShapeParameter&) = default;
 };
-
-class CompiledShape;
 
 /// Copies share what was read. Threads may use one, and its copies, at once.
 class Shape {
@@ -45,7 +47,8 @@ class Shape {
   Shape(const char* text);         // NOLINT(google-explicit-constructor): a shape is its text
   Shape(const std::string& text);  // NOLINT(google-explicit-constructor)
   /// One that has been read: for the library's own use.
-  explicit Shape(std::shared_ptr<const CompiledShape> compiled) : compiled_(std::move(compiled)) {}
+  explicit Shape(std::shared_ptr<const effects::CompiledShape> compiled)
+      : compiled_(std::move(compiled)) {}
   /// The pattern with its "{name}"s filled in.
   Shape(const std::string& pattern, const std::vector<ShapeParameter>& parameters);
 
@@ -79,7 +82,7 @@ class Shape {
   }
 
  private:
-  std::shared_ptr<const CompiledShape> compiled_;
+  std::shared_ptr<const effects::CompiledShape> compiled_;
 };
 
 /// The pattern with "{name}" replaced by each parameter's value: the shortest text that reads back

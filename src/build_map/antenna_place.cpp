@@ -14,7 +14,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
-namespace trussmap {
+namespace trussmap::map_building {
 namespace {
 
 /// Where the robot is by the sightings, and a fix has its antenna.
@@ -26,11 +26,11 @@ struct FixedPose {
 bool is_stated(const Model& model) {
   return model.robot.mounted.antenna ||
          std::any_of(model.effects.begin(), model.effects.end(), [](const Effect& one) {
-           return acts_on_fixes(one.channel) && !is_delay(one.channel);
+           return effects::acts_on_fixes(one.channel) && !effects::is_delay(one.channel);
          });
 }
 
-std::vector<FixedPose> fixed_poses(const FitState& fit) {
+std::vector<FixedPose> fixed_poses(const fitting::FitState& fit) {
   constexpr std::size_t kMost = 3000;
   std::vector<FixedPose> result;
   for (std::size_t s = 0; s < fit.recordings.size(); ++s) {
@@ -39,10 +39,10 @@ std::vector<FixedPose> fixed_poses(const FitState& fit) {
     for (const Fix& one : recording.fixes) {
       // Before the first sighting and after the last one nothing holds the path.
       if (one.t < recording.sightings.front().t || one.t > recording.sightings.back().t) continue;
-      result.push_back({pose_at(recording.drive, fit.paths[s], one.t), {one.x, one.y}});
+      result.push_back({fitting::pose_at(recording.drive, fit.paths[s], one.t), {one.x, one.y}});
     }
   }
-  return thinned(std::move(result), kMost);
+  return statistics::thinned(std::move(result), kMost);
 }
 
 /// Of (t, cos, sin, R s): two rows per fix.
@@ -84,7 +84,7 @@ std::optional<Solved> solved(const Eigen::MatrixXd& A, const Eigen::VectorXd& b)
     if (solver.rank() < A.cols()) return std::nullopt;
     result.x = solver.solve(weights.matrix().asDiagonal() * b);
     const Eigen::ArrayXd off = (A * result.x - b).array().abs();
-    result.usual = median({off.data(), off.data() + off.size()});
+    result.usual = statistics::median({off.data(), off.data() + off.size()});
     weights = 1.0 / (1.0 + (off / std::max(2.0 * result.usual, 1e-9)).square()).sqrt();
   }
   const Eigen::MatrixXd weighted = weights.matrix().asDiagonal() * A;
@@ -99,7 +99,7 @@ std::optional<Solved> solved(const Eigen::MatrixXd& A, const Eigen::VectorXd& b)
 }  // namespace
 
 std::optional<AntennaFound> antenna_by_sightings(const std::vector<DrivenRecording>& recordings,
-                                                 const Model& model, FitterOptions how) {
+                                                 const Model& model, fitting::FitterOptions how) {
   constexpr std::size_t kFewest = 20;  // fixes
   constexpr double kSure = 8.0;        // standard deviations: errors last
   constexpr double kTellable = 0.05;   // m
@@ -115,7 +115,7 @@ std::optional<AntennaFound> antenna_by_sightings(const std::vector<DrivenRecordi
   how.free_common_errors = true;
   std::vector<FixedPose> poses;
   try {
-    poses = fixed_poses(fit_recordings(recordings, model, how));
+    poses = fixed_poses(fitting::fit_recordings(recordings, model, how));
   } catch (const SolveError&) {  // too little without the fixes
     return std::nullopt;
   }
@@ -131,4 +131,4 @@ std::optional<AntennaFound> antenna_by_sightings(const std::vector<DrivenRecordi
   return AntennaFound{{place.x(), place.y(), 0.0}, sd};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

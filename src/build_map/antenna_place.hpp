@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map_building {
 
 struct AntennaFound {
   Mounting place;
@@ -24,6 +24,6 @@ struct AntennaFound {
 /// Nothing where the model states a place or an effect of it, where sightings or fixes are few, and
 /// where the antenna may as well be over the axle. `how`: of the map's fit.
 [[nodiscard]] std::optional<AntennaFound> antenna_by_sightings(
-    const std::vector<DrivenRecording>& recordings, const Model& model, FitterOptions how);
+    const std::vector<DrivenRecording>& recordings, const Model& model, fitting::FitterOptions how);
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

@@ -19,6 +19,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace map_building;
+
 namespace {
 
 constexpr int kFewestSurveyed = 3;
@@ -26,7 +28,7 @@ constexpr int kFewestSurveyed = 3;
 void check(const std::vector<DrivenRecording>& recordings, const Robot& robot,
            const BuildMapOptions& options) {
   if (recordings.empty()) throw std::invalid_argument("a map needs a recording");
-  require_well_formed(recordings, robot);
+  drive::require_well_formed(recordings, robot);
   if (!(options.gate.value_or(kAdjustmentGate) > 0.0) || !(options.min_drive >= 0.0)) {
     throw std::invalid_argument("an option of build_map is out of range");
   }
@@ -41,7 +43,7 @@ void require_sightings(const std::vector<DrivenRecording>& recordings) {
   }
 }
 
-std::vector<SightedDrive> sessions_of(const std::vector<ClearedRecording>& cleared,
+std::vector<SightedDrive> sessions_of(const std::vector<fitting::ClearedRecording>& cleared,
                                       const Model& model, const std::vector<SessionGuide>& guides) {
   std::vector<SightedDrive> sessions;
   sessions.reserve(cleared.size());
@@ -51,13 +53,13 @@ std::vector<SightedDrive> sessions_of(const std::vector<ClearedRecording>& clear
   return sessions;
 }
 
-bool has_stops(const ClearedRecording& clear) {
+bool has_stops(const fitting::ClearedRecording& clear) {
   const std::vector<Sighting>& sightings = clear.recording.sightings;
   return std::any_of(sightings.begin(), sightings.end(),
                      [](const Sighting& one) { return one.locates(); });
 }
 
-std::set<std::string> landmarks_stood_on(const std::vector<ClearedRecording>& clear,
+std::set<std::string> landmarks_stood_on(const std::vector<fitting::ClearedRecording>& clear,
                                          const std::vector<SessionGuide>& guides) {
   std::set<std::string> names;
   for (std::size_t s = 0; s < clear.size(); ++s) {
@@ -93,7 +95,7 @@ std::optional<MapOnSurvey> laid_on_survey(const BuiltMap& built,
   return result;
 }
 
-BuiltMap map_of(const MapFitState& best, const std::vector<ClearedRecording>& clear,
+BuiltMap map_of(const MapFitState& best, const std::vector<fitting::ClearedRecording>& clear,
                 const Model& model, const std::vector<SessionGuide>& guides,
                 const BuildMapOptions& options) {
   const LandmarkGraph landmarks = adjusted_landmarks(best.fit);
@@ -152,9 +154,10 @@ Turn turn_onto(const LandmarkGraph& adjusted, const MapBuilder& builder,
     variance = std::max(variance, 0.5 * landmark.covariance->trace());
   }
   if (from.size() < 2) {
-    throw SolveError(joined(recording, " shares too few landmarks with the map (", from.size(),
-                            "), expected two at least to turn it by: it has not the map's axes, "
-                            "which a compass in both would give"));
+    throw SolveError(
+        text::joined(recording, " shares too few landmarks with the map (", from.size(),
+                     "), expected two at least to turn it by: it has not the map's axes, "
+                     "which a compass in both would give"));
   }
   Turn turn;
   Alignment laid = align_rigidly(from, to);
@@ -171,15 +174,16 @@ Turn turn_onto(const LandmarkGraph& adjusted, const MapBuilder& builder,
   constexpr double kMostUncertain = 0.05;  // rad
   const double sd = std::sqrt(std::max(variance, laid.rms * laid.rms) / spread);
   if (!(sd < kMostUncertain)) {
-    throw SolveError(joined(recording, " shares ", from.size(),
-                            " landmarks with the map that lie too close together to turn it by, "
-                            "expected some farther apart, or a compass in both"));
+    throw SolveError(
+        text::joined(recording, " shares ", from.size(),
+                     " landmarks with the map that lie too close together to turn it by, "
+                     "expected some farther apart, or a compass in both"));
   }
   return turn;
 }
 
 void take_fit(BuiltMap& built, const MapFitState& best) {
-  const RecordingAdjustment& fit = best.fit.adjustment;
+  const estimation::RecordingAdjustment& fit = best.fit.adjustment;
   built.fit = MapFit{fit.chi2, fit.dof, fit.p_value, fit.iterations, fit.converged};
   built.freed = best.freed;
 }
@@ -193,7 +197,7 @@ BuiltMap build_paths(const std::vector<DrivenRecording>& recordings, const Model
   const MapFitState best = fit_map(recordings, model, options.gate);
   BuiltMap built;
   take_fit(built, best);
-  built.paths = paths_of(best, recordings, cleared(recordings, model), model);
+  built.paths = paths_of(best, recordings, fitting::cleared(recordings, model), model);
   built.quality = quality_of(built.paths, best);
   doubt(built, best, recordings, model);
   return built;
@@ -227,9 +231,9 @@ BuiltMap build_map(const std::vector<DrivenRecording>& recordings, const Model& 
   require_sightings(recordings);
   const MapFitState best = fit_map(recordings, model, options.gate);
   const std::vector<SessionGuide> guides = guides_of(best.fit);
-  const std::vector<ClearedRecording> believed = cleared(recordings, model);
+  const std::vector<fitting::ClearedRecording> believed = fitting::cleared(recordings, model);
   const bool guided = options.method == Method::adjustment;
-  BuiltMap built = guided ? map_of(best, best.freed.empty() ? believed : cleared(best.fit),
+  BuiltMap built = guided ? map_of(best, best.freed.empty() ? believed : fitting::cleared(best.fit),
                                    best.fit.model, guides, options)
                           : map_of(best, believed, model, unguided(guides), options);
   return judged(std::move(built), best, guided, recordings, model,
@@ -243,8 +247,9 @@ BuiltMap extend_map(MapBuilder& builder, const DrivenRecording& recording, const
   require_sightings(recordings);
   const MapFitState best = fit_map(recordings, model, options.gate);
   const std::vector<SessionGuide> guides = guides_of(best.fit);
-  const std::vector<ClearedRecording> believed = cleared(recordings, model);
-  const std::vector<ClearedRecording> clear = best.freed.empty() ? believed : cleared(best.fit);
+  const std::vector<fitting::ClearedRecording> believed = fitting::cleared(recordings, model);
+  const std::vector<fitting::ClearedRecording> clear =
+      best.freed.empty() ? believed : fitting::cleared(best.fit);
   const LandmarkGraph landmarks = adjusted_landmarks(best.fit);
   const bool extended = builder.landmarks() > 0;
   LegByLegOptions how{options, landmarks};

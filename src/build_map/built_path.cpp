@@ -8,27 +8,29 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::map_building {
 namespace {
 
-std::vector<Vector2> places_of(const SessionPath& path) {
+std::vector<Vector2> places_of(const fitting::SessionPath& path) {
   std::vector<Vector2> places{path.start.position()};
   places.reserve(path.ends.size() + 1);
   for (const Pose& one : path.ends) places.push_back(one.position());
   return places;
 }
 
-double dispersion_of(const FitState& fit) {
+double dispersion_of(const fitting::FitState& fit) {
   return fit.adjustment.chi2 / std::max(1, fit.adjustment.dof);
 }
 
-PathTie tie_of(const FitState& fit, const Measurement& one) {
+PathTie tie_of(const fitting::FitState& fit, const estimation::Measurement& one) {
   const auto pose = [&fit](int node) { return idx(node - fit.problem.landmark_count()); };
-  const ViewPattern view = view_of(fit.columns.border, offsets_of(fit), one);
+  const effects::ViewPattern view =
+      estimation::view_of(fit.columns.border, fitting::offsets_of(fit), one);
   const Vector2 error =
-      measurement_rows(fit.problem, one, fit.adjustment.state, one.value, view).error.head<2>();
+      estimation::measurement_rows(fit.problem, one, fit.adjustment.state, one.value, view)
+          .error.head<2>();
   PathTie tie;
-  tie.loop = is_tie(one);
+  tie.loop = estimation::is_tie(one);
   tie.t = fit.problem.time_of(one.from);
   tie.misfit = error.norm();
   if (tie.loop) {
@@ -43,14 +45,14 @@ PathTie tie_of(const FitState& fit, const Measurement& one) {
 }
 
 /// Fixes and loops that were used, and those that were left out.
-void add_ties(const FitState& fit, std::vector<BuiltPath>& paths) {
+void add_ties(const fitting::FitState& fit, std::vector<BuiltPath>& paths) {
   std::size_t next = 0;  // of left_out, which ascends
   const std::vector<int>& left_out = fit.adjustment.left_out;
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
-    const Measurement& one = fit.problem.measurements[k];
+    const estimation::Measurement& one = fit.problem.measurements[k];
     const bool out = next < left_out.size() && idx(left_out[next]) == k;
     if (out) ++next;
-    if (!is_tie(one) && !is_position(one)) continue;
+    if (!estimation::is_tie(one) && !estimation::is_position(one)) continue;
     PathTie tie = tie_of(fit, one);
     tie.left_out = out;
     paths[idx(one.session)].ties.push_back(tie);
@@ -62,13 +64,13 @@ void add_ties(const FitState& fit, std::vector<BuiltPath>& paths) {
   }
 }
 
-void add_standard_errors(const FitState& fit, std::vector<BuiltPath>& paths) {
+void add_standard_errors(const fitting::FitState& fit, std::vector<BuiltPath>& paths) {
   const std::vector<Matrix3> covariances =
-      pose_covariances(fit.problem, fit.columns.border, fit.adjustment);
+      estimation::pose_covariances(fit.problem, fit.columns.border, fit.adjustment);
   const double scale = std::max(1.0, dispersion_of(fit));
   std::vector<std::vector<double>> sds(paths.size());
   for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
-    const PoseNode& node = fit.problem.poses[k];
+    const estimation::PoseNode& node = fit.problem.poses[k];
     BuiltPath& path = paths[idx(node.session)];
     const double sd = std::sqrt(scale * covariances[k].topLeftCorner<2, 2>().trace());
     sds[idx(node.session)].push_back(sd);
@@ -76,19 +78,21 @@ void add_standard_errors(const FitState& fit, std::vector<BuiltPath>& paths) {
     path.worst_sd = sd;
     path.worst_t = node.t;
   }
-  for (std::size_t s = 0; s < paths.size(); ++s) paths[s].median_sd = median(std::move(sds[s]));
+  for (std::size_t s = 0; s < paths.size(); ++s)
+    paths[s].median_sd = statistics::median(std::move(sds[s]));
 }
 
 std::optional<PathOnTruth> laid_on_truth(const DrivenRecording& recording,
-                                         const SessionPath& adjusted, const SessionPath& reckoned) {
+                                         const fitting::SessionPath& adjusted,
+                                         const fitting::SessionPath& reckoned) {
   constexpr std::size_t kFewest = 3;
   const MotionRows& drive = recording.drive;
   std::vector<Vector2> truth, path, dead;
   for (const TruthRow& row : recording.truth) {
     if (row.t < drive.start() || row.t > drive.t.back()) continue;
     truth.emplace_back(row.x, row.y);
-    path.push_back(pose_at(drive, adjusted, row.t).position());
-    dead.push_back(pose_at(drive, reckoned, row.t).position());
+    path.push_back(fitting::pose_at(drive, adjusted, row.t).position());
+    dead.push_back(fitting::pose_at(drive, reckoned, row.t).position());
   }
   if (truth.size() < kFewest) return std::nullopt;
   return PathOnTruth{static_cast<int>(truth.size()), align_rigidly(path, truth).rms,
@@ -99,11 +103,12 @@ std::optional<PathOnTruth> laid_on_truth(const DrivenRecording& recording,
 
 std::vector<BuiltPath> paths_of(const MapFitState& best,
                                 const std::vector<DrivenRecording>& recordings,
-                                const std::vector<ClearedRecording>& believed, const Model& model) {
+                                const std::vector<fitting::ClearedRecording>& believed,
+                                const Model& model) {
   std::vector<BuiltPath> paths(recordings.size());
   for (std::size_t s = 0; s < paths.size(); ++s) {
     BuiltPath& path = paths[s];
-    const SessionPath reckoned = reckoned_path(believed[s], model);
+    const fitting::SessionPath reckoned = fitting::reckoned_path(believed[s], model);
     path.recording = recordings[s].name;
     path.adjusted = places_of(best.fit.paths[s]);
     path.dead_reckoned = places_of(reckoned);
@@ -133,10 +138,10 @@ MapQuality quality_of(const std::vector<BuiltPath>& paths, const MapFitState& be
     lost += std::count_if(path.ties.begin(), path.ties.end(),
                           [](const PathTie& one) { return one.left_out; });
   }
-  result.median_sd = median(std::move(medians));
+  result.median_sd = statistics::median(std::move(medians));
   result.left_out_share =
       static_cast<double>(lost) / static_cast<double>(std::max<std::ptrdiff_t>(1, ties));
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

@@ -14,16 +14,15 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map_building {
 
 /// One per recording; `believed` are the recordings freed from the effects that the user's model
 /// states. The fit has laid its paths.
-[[nodiscard]] std::vector<BuiltPath> paths_of(const MapFitState& best,
-                                              const std::vector<DrivenRecording>& recordings,
-                                              const std::vector<ClearedRecording>& believed,
-                                              const Model& model);
+[[nodiscard]] std::vector<BuiltPath> paths_of(
+    const MapFitState& best, const std::vector<DrivenRecording>& recordings,
+    const std::vector<fitting::ClearedRecording>& believed, const Model& model);
 
 /// Figures of the paths together.
 [[nodiscard]] MapQuality quality_of(const std::vector<BuiltPath>& paths, const MapFitState& best);
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

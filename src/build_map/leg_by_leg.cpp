@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace trussmap {
+namespace trussmap::map_building {
 namespace {
 
 /// Sessions with a compass first: it gives the map its direction.
@@ -51,9 +51,9 @@ BuiltMap map_leg_by_leg(const std::vector<SightedDrive>& sessions, const LegByLe
   if (result.legs == 0) {
     throw InputError(sessions.front().recording().name, 0,
                      "no leg, expected a drive from one landmark to another, " +
-                         short_text(options.build.min_drive) + " m or more of driven path");
+                         text::short_text(options.build.min_drive) + " m or more of driven path");
   }
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map_building {
 
 struct LegByLegOptions {
   BuildMapOptions build;       ///< with a method that a map builder has
@@ -36,4 +36,4 @@ struct LegByLegOptions {
 [[nodiscard]] BuiltMap map_leg_by_leg(const std::vector<SightedDrive>& sessions,
                                       const LegByLegOptions& options, MapBuilder& builder);
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

@@ -17,7 +17,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::map_building {
 namespace {
 
 void doubt_units(const std::vector<DrivenRecording>& recordings, const Model& model,
@@ -28,17 +28,17 @@ void doubt_units(const std::vector<DrivenRecording>& recordings, const Model& mo
     const MotionRows& drive = recording.drive;
     double path = 0.0;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
-      const auto [left, right] = own_travel(drive, row, model.robot);
+      const auto [left, right] = drive::own_travel(drive, row, model.robot);
       path += std::max(std::abs(left), std::abs(right));
     }
     const double speed = path / (drive.t.back() - drive.start());
     if (speed > kFast) {
-      warnings.push_back(recording.name + ": the wheels drive at " + short_text(speed, 3) +
+      warnings.push_back(recording.name + ": the wheels drive at " + text::short_text(speed, 3) +
                          " m/s on average; are left and right in metres, t in seconds?");
     }
   }
   if (model.robot.wheelbase > kWide) {
-    warnings.push_back("a wheelbase of " + short_text(model.robot.wheelbase) +
+    warnings.push_back("a wheelbase of " + text::short_text(model.robot.wheelbase) +
                        " m; is it in metres?");
   }
 }
@@ -53,11 +53,11 @@ double contradiction(const LandmarkGraph& map) {
                         route.displacement;
     distances.push_back(std::sqrt(off.dot(route.covariance.inverse() * off)));
   }
-  return distances.empty() ? 0.0 : median(std::move(distances));
+  return distances.empty() ? 0.0 : statistics::median(std::move(distances));
 }
 
 /// Rms distance of the built map from the adjusted one, after rotation and translation, m.
-double distance_from(const FitState& fit, const LandmarkGraph& map) {
+double distance_from(const fitting::FitState& fit, const LandmarkGraph& map) {
   std::vector<Vector2> here, there;
   for (std::size_t k = 0; k < fit.problem.landmarks.size(); ++k) {
     const std::optional<int> landmark = map.find(fit.problem.landmarks[k]);
@@ -68,25 +68,27 @@ double distance_from(const FitState& fit, const LandmarkGraph& map) {
   return here.size() < 2 ? 0.0 : align_rigidly(here, there).rms;
 }
 
-int sightings_of(const RecordingProblem& problem) {
-  return static_cast<int>(
-      std::count_if(problem.measurements.begin(), problem.measurements.end(), is_sighting));
+int sightings_of(const estimation::RecordingProblem& problem) {
+  return static_cast<int>(std::count_if(problem.measurements.begin(), problem.measurements.end(),
+                                        estimation::is_sighting));
 }
 
 std::string words_of(const FreedError& one) {
   const double value = one.effect.coefficients.front();
   const double sd = one.sd.front();
   const auto percent = [&] {
-    return signed_fixed_text(100.0 * value, 2) + " +- " + fixed_text(100.0 * sd, 2) + " %";
+    return text::signed_fixed_text(100.0 * value, 2) + " +- " + text::fixed_text(100.0 * sd, 2) +
+           " %";
   };
   if (facts_of(one.effect.channel).unit == "rad/s") {
-    return one.effect.name + " " + signed_fixed_text(60.0 * value / kDegree, 1) + " +- " +
-           fixed_text(60.0 * sd / kDegree, 1) + " deg/min";
+    return one.effect.name + " " + text::signed_fixed_text(60.0 * value / geometry::kDegree, 1) +
+           " +- " + text::fixed_text(60.0 * sd / geometry::kDegree, 1) + " deg/min";
   }
   if (one.effect.channel == Channel::compass) {
     return one.effect.name + " " +
-           fixed_text(std::hypot(value, one.effect.coefficients.back()) / kDegree, 2) + " +- " +
-           fixed_text(std::max(sd, one.sd.back()) / kDegree, 2) + " deg";
+           text::fixed_text(std::hypot(value, one.effect.coefficients.back()) / geometry::kDegree,
+                            2) +
+           " +- " + text::fixed_text(std::max(sd, one.sd.back()) / geometry::kDegree, 2) + " deg";
   }
   if (one.effect.channel == Channel::turn) return "turns " + percent() + " (wheelbase)";
   return one.effect.name + " " + percent();
@@ -115,19 +117,19 @@ struct Supports {
   std::vector<std::string> single;
 };
 
-Supports supports_of(const FitState& fit) {
-  const RecordingProblem& problem = fit.problem;
+Supports supports_of(const fitting::FitState& fit) {
+  const estimation::RecordingProblem& problem = fit.problem;
   std::vector<int> kept(problem.landmarks.size());
   std::vector<int> lost(problem.landmarks.size());
   std::vector<bool> stood_on(problem.landmarks.size());
-  for (const Measurement& one : problem.measurements) {
-    if (!is_sighting(one)) continue;
+  for (const estimation::Measurement& one : problem.measurements) {
+    if (!estimation::is_sighting(one)) continue;
     ++kept[idx(one.to)];
-    if (is_standing(one)) stood_on[idx(one.to)] = true;
+    if (estimation::is_standing(one)) stood_on[idx(one.to)] = true;
   }
   for (const int k : fit.adjustment.left_out) {
-    const Measurement& one = problem.measurements[idx(k)];
-    if (!is_sighting(one)) continue;
+    const estimation::Measurement& one = problem.measurements[idx(k)];
+    if (!estimation::is_sighting(one)) continue;
     --kept[idx(one.to)];
     ++lost[idx(one.to)];
   }
@@ -140,16 +142,17 @@ Supports supports_of(const FitState& fit) {
 }
 
 /// Fixes and loops that were left out; the sightings stand in BuiltMap::rejected.
-void tell_left_out(const FitState& fit, std::vector<std::string>& warnings) {
+void tell_left_out(const fitting::FitState& fit, std::vector<std::string>& warnings) {
   constexpr int kNamed = 5;
   int count = 0;
   for (const int k : fit.adjustment.left_out) {
-    const Measurement& one = fit.problem.measurements[idx(k)];
-    if (is_sighting(one)) continue;
-    if (++count <= kNamed) warnings.push_back(describe(fit.problem, one) + " was left out");
+    const estimation::Measurement& one = fit.problem.measurements[idx(k)];
+    if (estimation::is_sighting(one)) continue;
+    if (++count <= kNamed)
+      warnings.push_back(estimation::describe(fit.problem, one) + " was left out");
   }
   if (count > kNamed) {
-    warnings.push_back(joined("and ", count - kNamed, " more fixes or loops were left out"));
+    warnings.push_back(text::joined("and ", count - kNamed, " more fixes or loops were left out"));
   }
 }
 
@@ -165,14 +168,14 @@ void doubt_fit(BuiltMap& built, const MapFitState& best) {
   constexpr double kSurelyFreed = 1e-3;
   constexpr double kImplausible = 1e-4;
   constexpr double kNoticeable = 1.1;  // of the dispersion
-  const RecordingAdjustment& fit = best.fit.adjustment;
+  const estimation::RecordingAdjustment& fit = best.fit.adjustment;
   const Words words = built.paths.empty()
                           ? Words{"map", "sightings", "labels are often misread"}
                           : Words{"path", "fixes and loops", "they are often wrong"};
   std::vector<std::string>& warnings = built.warnings;
   if (!fit.converged) {
-    warnings.push_back(joined("no minimum was reached in ", fit.iterations, " iterations: the ",
-                              words.built, " is not the best one"));
+    warnings.push_back(text::joined("no minimum was reached in ", fit.iterations,
+                                    " iterations: the ", words.built, " is not the best one"));
   }
   if (!built.freed.empty()) {
     const std::string freed = words_of(built.freed);
@@ -187,14 +190,15 @@ void doubt_fit(BuiltMap& built, const MapFitState& best) {
   }
   if (best.antenna) {
     const Mounting& at = best.antenna->place;
-    warnings.push_back(joined("the antenna of the fixes sits ", signed_fixed_text(at.x, 3),
-                              " m ahead of "
-                              "the axle's centre and ",
-                              signed_fixed_text(at.y, 3), " m to its left (+- ",
-                              fixed_text(best.antenna->sd, 3),
-                              "), by the sightings, and is taken "
-                              "to be there: the model has it at the centre; state [robot.antenna], "
-                              "or calibrate"));
+    warnings.push_back(
+        text::joined("the antenna of the fixes sits ", text::signed_fixed_text(at.x, 3),
+                     " m ahead of "
+                     "the axle's centre and ",
+                     text::signed_fixed_text(at.y, 3), " m to its left (+- ",
+                     text::fixed_text(best.antenna->sd, 3),
+                     "), by the sightings, and is taken "
+                     "to be there: the model has it at the centre; state [robot.antenna], "
+                     "or calibrate"));
   }
   const double share = built.quality.left_out_share;
   if (std::isinf(fit.gate_widened)) {
@@ -205,16 +209,16 @@ void doubt_fit(BuiltMap& built, const MapFitState& best) {
   } else if (fit.gate_widened > 1.0) {
     warnings.push_back(
         "more " + words.of + " contradict the rest than are ever wrong: only those beyond " +
-        fixed_text(kAdjustmentGate * fit.gate_widened, 0) +
+        text::fixed_text(kAdjustmentGate * fit.gate_widened, 0) +
         " standard deviations were left out; the model is wrong, or its noise is too "
         "small; run discover");
   } else if (share > kManyOut) {
-    warnings.push_back(fixed_text(100.0 * share, 0) + " % of the " + words.of +
+    warnings.push_back(text::fixed_text(100.0 * share, 0) + " % of the " + words.of +
                        " contradict the rest and were left out: that many are seldom wrong; run "
                        "discover");
   }
   if (fit.p_value < kImplausible && built.quality.dispersion > kNoticeable) {
-    warnings.push_back("errors are " + times_text(std::sqrt(built.quality.dispersion)) +
+    warnings.push_back("errors are " + text::times_text(std::sqrt(built.quality.dispersion)) +
                        " times what the model's noise allows: its noise is too small, or an effect "
                        "is missing; run discover");
   }
@@ -227,7 +231,7 @@ void doubt_ties(BuiltMap& built) {
     if (path.median_sd <= kLoose * extent_of(path.adjusted)) continue;
     built.warnings.push_back((built.paths.size() > 1 ? path.recording + ": " : std::string()) +
                              "the path is loosely tied: half of it is uncertain by " +
-                             fixed_text(path.median_sd, 2) +
+                             text::fixed_text(path.median_sd, 2) +
                              " m or more; it takes more fixes, or loops");
   }
 }
@@ -246,25 +250,26 @@ void doubt_shape(BuiltMap& built, const MapFitState& best) {
   std::vector<std::string>& warnings = built.warnings;
   if (built.quality.median_sd > kLoose * extent) {
     warnings.push_back("the landmarks are loosely tied together: half of them are uncertain by " +
-                       fixed_text(built.quality.median_sd, 2) + " m or more; drive more loops");
+                       text::fixed_text(built.quality.median_sd, 2) +
+                       " m or more; drive more loops");
   }
   if (built.method != Method::adjustment) {
     const double off = built.quality.from_adjusted;
     const bool apart = off > kMuchWorse * built.quality.median_sd && off > kLoose * extent;
     if (!built.off_map.empty()) {
-      warnings.push_back(joined(built.off_map.size(),
-                                " arrivals contradict the map and were left "
-                                "out of it, at: ") +
+      warnings.push_back(text::joined(built.off_map.size(),
+                                      " arrivals contradict the map and were left "
+                                      "out of it, at: ") +
                          listed(unique(built.off_map)) +
                          "; have these landmarks moved, or were labels misread?");
     }
     if (apart && built.extended) {
       warnings.push_back("adjusted by itself, the recording puts its landmarks " +
-                         fixed_text(off, 2) +
+                         text::fixed_text(off, 2) +
                          " m (rms) from where the map has them: have some moved, or is it another "
                          "place?");
     } else if (apart) {
-      warnings.push_back("this method's map lies " + fixed_text(off, 2) +
+      warnings.push_back("this method's map lies " + text::fixed_text(off, 2) +
                          " m (rms) from the adjusted one, which is the better one: take that");
     }
     if (!best.fit.model.noise.processes.empty()) {
@@ -275,7 +280,7 @@ void doubt_shape(BuiltMap& built, const MapFitState& best) {
   }
   const double torn = contradiction(built.map);
   if (torn > kTorn) {
-    warnings.push_back("the map contradicts its own routes, by " + fixed_text(torn, 0) +
+    warnings.push_back("the map contradicts its own routes, by " + text::fixed_text(torn, 0) +
                        " standard deviations in the middle; " +
                        (built.method == Method::elastic_printed
                             ? "the printed refinement diverges here, use the method elastic"
@@ -326,11 +331,12 @@ std::string listed(const std::vector<std::string>& names) {
   for (std::size_t k = 0; k < std::min(names.size(), kNamed); ++k) {
     result += (k == 0 ? "" : ", ") + names[k];
   }
-  return names.size() > kNamed ? joined(result, " and ", names.size() - kNamed, " more") : result;
+  return names.size() > kNamed ? text::joined(result, " and ", names.size() - kNamed, " more")
+                               : result;
 }
 
 MapQuality quality_of(const BuiltMap& built, const MapFitState& best, const ReckonedMap& reckoned) {
-  const RecordingAdjustment& fit = best.fit.adjustment;
+  const estimation::RecordingAdjustment& fit = best.fit.adjustment;
   MapQuality result;
   result.dispersion = fit.chi2 / std::max(1, fit.dof);
   const double scale = std::sqrt(std::max(1.0, result.dispersion));
@@ -341,18 +347,18 @@ MapQuality quality_of(const BuiltMap& built, const MapFitState& best, const Reck
     result.worst_sd = sds.back();
     result.worst_landmark = best.fit.problem.landmarks[k];
   }
-  result.median_sd = median(std::move(sds));
+  result.median_sd = statistics::median(std::move(sds));
   std::vector<double> headings;
   for (const double sd : fit.orientation_sds) {
     if (!std::isnan(sd)) headings.push_back(scale * sd);
   }
   result.oriented = static_cast<int>(headings.size());
-  if (!headings.empty()) result.median_sd_heading = median(std::move(headings));
+  if (!headings.empty()) result.median_sd_heading = statistics::median(std::move(headings));
   result.loops = static_cast<int>(reckoned.misclosures.size());
-  result.misclosure_share = median(reckoned.misclosures);
+  result.misclosure_share = statistics::median(reckoned.misclosures);
   result.sightings = sightings_of(best.fit.problem);
   const auto lost = std::count_if(fit.left_out.begin(), fit.left_out.end(), [&](int k) {
-    return is_sighting(best.fit.problem.measurements[idx(k)]);
+    return estimation::is_sighting(best.fit.problem.measurements[idx(k)]);
   });
   result.left_out_share = static_cast<double>(lost) / std::max(1, result.sightings);
   result.from_adjusted =
@@ -370,11 +376,11 @@ void doubt(BuiltMap& built, const MapFitState& best, const std::vector<DrivenRec
     return;
   }
   tell_left_out(best.fit, built.warnings);
-  std::ranges::move(mirror_warnings(best.fit.problem, best.fit.adjustment),
+  std::ranges::move(estimation::mirror_warnings(best.fit.problem, best.fit.adjustment),
                     std::back_inserter(built.warnings));
   doubt_shape(built, best);
   doubt_against_survey(built, model.noise);
   doubt_against_truth(built, best.fit, recordings);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map_building {
 
 /// Figures of the built map, which has its positions. `best` is the fit that it rests on.
 [[nodiscard]] MapQuality quality_of(const BuiltMap& built, const MapFitState& best,
@@ -28,4 +28,4 @@ namespace trussmap {
 void doubt(BuiltMap& built, const MapFitState& best, const std::vector<DrivenRecording>& recordings,
            const Model& model);
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

@@ -11,13 +11,13 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::map_building {
 namespace {
 
 constexpr double kFreed = 0.05;  // p-value below which common errors stay
 
-FitterOptions options_for(const std::optional<double>& gate) {
-  FitterOptions how;
+fitting::FitterOptions options_for(const std::optional<double>& gate) {
+  fitting::FitterOptions how;
   how.fit_effects = false;
   how.relinearise = false;
   how.problem.survey = false;
@@ -33,17 +33,17 @@ FitterOptions options_for(const std::optional<double>& gate) {
 }
 
 /// Wald's test of all common errors at once, by the scatter that there is.
-double p_value_of_common_errors(const FitState& fit) {
+double p_value_of_common_errors(const fitting::FitState& fit) {
   const Eigen::VectorXd& values = fit.adjustment.coefficients;
   if (values.size() == 0) return 1.0;
   const double dispersion = std::max(1.0, fit.adjustment.chi2 / std::max(1, fit.adjustment.dof));
   const double statistic =
       values.dot(fit.adjustment.coefficient_covariance.inverse() * values) / dispersion;
-  return chi2_p_value(statistic, static_cast<int>(values.size()));
+  return statistics::chi2_p_value(statistic, static_cast<int>(values.size()));
 }
 
 /// Standard errors by the scatter that there is, as those of the landmarks.
-std::vector<FreedError> freed_of(const FitState& fit) {
+std::vector<FreedError> freed_of(const fitting::FitState& fit) {
   const double dispersion = std::max(1.0, fit.adjustment.chi2 / std::max(1, fit.adjustment.dof));
   std::vector<FreedError> result;
   for (std::size_t k = fit.effects.size() - fit.common_errors; k < fit.effects.size(); ++k) {
@@ -54,11 +54,11 @@ std::vector<FreedError> freed_of(const FitState& fit) {
 }
 
 /// How far from its landmark a sighting points, m.
-double misfit_of(const FitState& fit, const Measurement& one) {
-  const RecordingState& state = fit.adjustment.state;
+double misfit_of(const fitting::FitState& fit, const estimation::Measurement& one) {
+  const estimation::RecordingState& state = fit.adjustment.state;
   const Pose& pose = state.poses[idx(one.from - fit.problem.landmark_count())];
   return one.kind->missed(one, pose, state.landmarks[idx(one.to)],
-                          view_of(fit.columns.border, offsets_of(fit), one));
+                          estimation::view_of(fit.columns.border, fitting::offsets_of(fit), one));
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ bool are_paths_alone(const std::vector<DrivenRecording>& recordings) {
 
 MapFitState fit_map(const std::vector<DrivenRecording>& recordings, const Model& given,
                     const std::optional<double>& gate) {
-  FitterOptions how = options_for(gate);
+  fitting::FitterOptions how = options_for(gate);
   Model model = given;
   const std::optional<AntennaFound> antenna = antenna_by_sightings(recordings, model, how);
   if (antenna) model.robot.mounted.antenna = antenna->place;
@@ -79,55 +79,56 @@ MapFitState fit_map(const std::vector<DrivenRecording>& recordings, const Model&
   how.paths = are_paths_alone(recordings);
   MapFitState result;
   result.antenna = antenna;
-  result.fit = fit_recordings(recordings, model, how);
+  result.fit = fitting::fit_recordings(recordings, model, how);
   result.p_freed = p_value_of_common_errors(result.fit);
   if (result.p_freed < kFreed) {
     result.freed = freed_of(result.fit);
   } else {
     how.free_common_errors = false;
     how.near = &result.fit;
-    FitState plain = fit_recordings(recordings, model, how);
+    fitting::FitState plain = fitting::fit_recordings(recordings, model, how);
     result.fit = std::move(plain);
   }
-  add_landmark_uncertainties(result.fit.problem, result.fit.columns.border, result.fit.adjustment);
+  estimation::add_landmark_uncertainties(result.fit.problem, result.fit.columns.border,
+                                         result.fit.adjustment);
   return result;
 }
 
-std::vector<RejectedSighting> left_out_of(const FitState& fit) {
+std::vector<RejectedSighting> left_out_of(const fitting::FitState& fit) {
   std::vector<RejectedSighting> result;
-  const RecordingProblem& problem = fit.problem;
+  const estimation::RecordingProblem& problem = fit.problem;
   for (const int k : fit.adjustment.left_out) {
-    const Measurement& one = problem.measurements[idx(k)];
-    if (!is_sighting(one)) continue;
+    const estimation::Measurement& one = problem.measurements[idx(k)];
+    if (!estimation::is_sighting(one)) continue;
     result.push_back({problem.sessions[idx(one.session)], problem.time_of(one.from),
                       problem.landmarks[idx(one.to)], misfit_of(fit, one)});
   }
   return result;
 }
 
-std::vector<SessionGuide> guides_of(const FitState& fit) {
+std::vector<SessionGuide> guides_of(const fitting::FitState& fit) {
   std::vector<SessionGuide> guides(fit.recordings.size());
   for (std::size_t s = 0; s < guides.size(); ++s) {
     guides[s].headings.resize(fit.recordings[s].sightings.size());
     guides[s].left_out.resize(fit.recordings[s].sightings.size());
     guides[s].yaw_left_out.resize(fit.recordings[s].sightings.size());
   }
-  for (const Measurement& one : fit.problem.measurements) {
-    if (!is_sighting(one)) continue;
+  for (const estimation::Measurement& one : fit.problem.measurements) {
+    if (!estimation::is_sighting(one)) continue;
     const std::size_t pose = idx(one.from - fit.problem.landmark_count());
     guides[idx(one.session)].headings[one.source] = fit.adjustment.state.poses[pose].heading;
   }
   for (const int k : fit.adjustment.left_out) {
-    const Measurement& one = fit.problem.measurements[idx(k)];
+    const estimation::Measurement& one = fit.problem.measurements[idx(k)];
     if (one.session < 0) continue;
     SessionGuide& guide = guides[idx(one.session)];
-    if (is_sighting(one)) guide.left_out[one.source] = true;
-    if (is_yaw(one)) guide.yaw_left_out[one.source] = true;
+    if (estimation::is_sighting(one)) guide.left_out[one.source] = true;
+    if (estimation::is_yaw(one)) guide.yaw_left_out[one.source] = true;
   }
   return guides;
 }
 
-LandmarkGraph adjusted_landmarks(const FitState& fit) {
+LandmarkGraph adjusted_landmarks(const fitting::FitState& fit) {
   LandmarkGraph result;
   for (std::size_t k = 0; k < fit.problem.landmarks.size(); ++k) {
     const int landmark =
@@ -165,4 +166,4 @@ void place_as(const LandmarkGraph& adjusted, LandmarkGraph& map) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

@@ -19,11 +19,11 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map_building {
 
 /// `fit.model` is the user's with the common errors that were freed behind it.
 struct MapFitState {
-  FitState fit;
+  fitting::FitState fit;
   std::vector<FreedError> freed;
   double p_freed = 1.0;  ///< chance of common errors as large where there are none
   std::optional<AntennaFound> antenna = {};  ///< off the axle, and taken to be there
@@ -38,13 +38,13 @@ struct MapFitState {
                                   const Model& model, const std::optional<double>& gate);
 
 /// Sightings that were left out, with how far each points from its landmark.
-[[nodiscard]] std::vector<RejectedSighting> left_out_of(const FitState& fit);
+[[nodiscard]] std::vector<RejectedSighting> left_out_of(const fitting::FitState& fit);
 
 /// What it says of each session to those who build leg by leg.
-[[nodiscard]] std::vector<SessionGuide> guides_of(const FitState& fit);
+[[nodiscard]] std::vector<SessionGuide> guides_of(const fitting::FitState& fit);
 
 /// Its landmarks with their covariances, without routes.
-[[nodiscard]] LandmarkGraph adjusted_landmarks(const FitState& fit);
+[[nodiscard]] LandmarkGraph adjusted_landmarks(const fitting::FitState& fit);
 
 /// Gives the map's landmarks their orientations, in axes that are turned by `turn` (rad).
 void orient_as(const LandmarkGraph& adjusted, double turn, LandmarkGraph& map);
@@ -52,4 +52,4 @@ void orient_as(const LandmarkGraph& adjusted, double turn, LandmarkGraph& map);
 /// Moves the map's landmarks there, and adds those that no leg has.
 void place_as(const LandmarkGraph& adjusted, LandmarkGraph& map);
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

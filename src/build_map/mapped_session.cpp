@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::map_building {
 namespace {
 
 constexpr double kMuchPoorer = 4.0;      // in variance
@@ -27,14 +27,14 @@ MappedSession::MappedSession(const SightedDrive& drive, const LegByLegOptions& o
       options_(options),
       builder_(builder),
       result_(result),
-      path_(driven_path(drive.drive())) {}
+      path_(drive::driven_path(drive.drive())) {}
 
 void MappedSession::run() {
   for (const SurveyPoint& point : recording_.survey) {
     survey_.emplace(point.landmark, Vector2(point.x, point.y));
   }
   if (!options_.guided) tour_ends_ = tour_ends();
-  for (const Stop& stop : stops_of(recording_.sightings)) {
+  for (const drive::Stop& stop : drive::stops_of(recording_.sightings)) {
     if (reference_ == nullptr) {
       begin(stop);
     } else {
@@ -53,7 +53,7 @@ void MappedSession::run() {
 }
 
 /// A session begins at the nearest landmark of the map that it sees, the first one anywhere.
-void MappedSession::begin(const Stop& stop) {
+void MappedSession::begin(const drive::Stop& stop) {
   std::vector<Accepted> seen = accepted_at(stop);
   const bool first_ever = builder_.landmarks() == 0;
   const auto at = std::find_if(seen.begin(), seen.end(), [&](const Accepted& one) {
@@ -85,7 +85,7 @@ HeadingEstimate MappedSession::with_yaw(const Sighting& at, const HeadingEstimat
   const double yaw = drive_.yaw_of(at);
   if (std::isnan(yaw) || !landmark.heading) return heading;
   const double own = std::hypot(drive_.yaw_sd(), landmark.sd_heading.value_or(0.0));
-  return reset_heading(heading, *landmark.heading - yaw - heading.heading, own * own);
+  return map::reset_heading(heading, *landmark.heading - yaw - heading.heading, own * own);
 }
 
 /// A landmark's orientation is what its first yaw made it, and the better known the more are read.
@@ -100,15 +100,15 @@ HeadingEstimate MappedSession::with_own_yaw(const Sighting& at, const HeadingEst
     orientation.variance = heading.variance + own;
     return heading;
   }
-  const HeadingEstimate after = reset_heading(heading, orientation.heading - yaw - heading.heading,
-                                              orientation.variance + own);
-  orientation =
-      reset_heading(orientation, after.heading + yaw - orientation.heading, heading.variance + own);
+  const HeadingEstimate after = map::reset_heading(
+      heading, orientation.heading - yaw - heading.heading, orientation.variance + own);
+  orientation = map::reset_heading(orientation, after.heading + yaw - orientation.heading,
+                                   heading.variance + own);
   return after;
 }
 
 /// Nearest first: the landmark stood on, else the nearest seen, is the stop's reference.
-std::vector<MappedSession::Accepted> MappedSession::accepted_at(const Stop& stop) const {
+std::vector<MappedSession::Accepted> MappedSession::accepted_at(const drive::Stop& stop) const {
   std::vector<Accepted> accepted;
   for (std::size_t k = stop.first; k < stop.first + stop.count; ++k) {
     const Sighting& sighting = recording_.sightings[k];
@@ -121,12 +121,13 @@ std::vector<MappedSession::Accepted> MappedSession::accepted_at(const Stop& stop
   return accepted;
 }
 
-void MappedSession::visit(const Stop& stop) {
+void MappedSession::visit(const drive::Stop& stop) {
   pose_ = drive_.reckon(pose_, time_, stop.t, readings_used_until_);
   time_ = stop.t;
   std::vector<Accepted> accepted = accepted_at(stop);
   if (accepted.empty() || accepted.front().sighting->landmark == reference_->landmark) return;
-  if (path_at(recording_.drive, path_, stop.t) - leg_start_ < options_.build.min_drive) return;
+  if (drive::path_at(recording_.drive, path_, stop.t) - leg_start_ < options_.build.min_drive)
+    return;
   if (!has_map_axes() && !builder_.find(accepted.front().sighting->landmark)) return;
   arrive(stop, accepted.front());
   accepted.erase(accepted.begin());
@@ -145,7 +146,7 @@ Arrival MappedSession::arrive_at(const Accepted& at) {
   return builder_.arrive(at.sighting->landmark, in_map(landmark_from_pose(pose_, at.offset)));
 }
 
-void MappedSession::arrive(const Stop& stop, const Accepted& at) {
+void MappedSession::arrive(const drive::Stop& stop, const Accepted& at) {
   const HeadingEstimate heading =
       own_axes_ ? HeadingEstimate{} : heading_after(at, landmark_from_pose(pose_, at.offset));
   const Arrival arrival = arrive_at(at);
@@ -178,20 +179,21 @@ HeadingEstimate MappedSession::heading_after(const Accepted& at, const PositionE
   const double heading = drive_.guided_heading(*at.sighting);
   const Vector2 in_map = to.position - from.position;
   if (in_map.squaredNorm() <= 0.0) return {heading, reckoned.variance};
-  const double of_traversal =
-      std::max(direction_variance(place.position, place.covariance) - start_heading_variance_, 0.0);
-  const double of_map = direction_variance(in_map, *from.covariance + *to.covariance);
-  return {heading, reset_heading(reckoned, 0.0, of_traversal + of_map).variance};
+  const double of_traversal = std::max(
+      map::direction_variance(place.position, place.covariance) - start_heading_variance_, 0.0);
+  const double of_map = map::direction_variance(in_map, *from.covariance + *to.covariance);
+  return {heading, map::reset_heading(reckoned, 0.0, of_traversal + of_map).variance};
 }
 
 /// Everything from here on is reckoned from this landmark, seen at this stop.
-void MappedSession::settle(const Stop& stop, const Accepted& at, const HeadingEstimate& heading) {
+void MappedSession::settle(const drive::Stop& stop, const Accepted& at,
+                           const HeadingEstimate& heading) {
   reference_ = at.sighting;
   pose_ = own_axes_ ? PoseEstimate{} : pose_from_landmark(heading, at.offset);
   start_heading_variance_ = heading.variance;
   reference_offset_ = at.offset;
   time_ = stop.t;
-  leg_start_ = path_at(recording_.drive, path_, stop.t);
+  leg_start_ = drive::path_at(recording_.drive, path_, stop.t);
 }
 
 /// Numbers of legs after which every route that the recording drives has been driven once more.
@@ -200,11 +202,11 @@ std::vector<std::size_t> MappedSession::tour_ends() const {
   std::vector<Way> ways;
   const Sighting* last = nullptr;
   double begun = 0.0;
-  for (const Stop& stop : stops_of(recording_.sightings)) {
+  for (const drive::Stop& stop : drive::stops_of(recording_.sightings)) {
     const std::vector<Accepted> seen = accepted_at(stop);
     if (seen.empty()) continue;
     const Sighting* next = seen.front().sighting;
-    const double at = path_at(recording_.drive, path_, stop.t);
+    const double at = drive::path_at(recording_.drive, path_, stop.t);
     if (last != nullptr) {
       if (next->landmark == last->landmark || at - begun < options_.build.min_drive) continue;
       ways.emplace_back(std::minmax(last->landmark, next->landmark));
@@ -271,4 +273,4 @@ void MappedSession::observe(const std::vector<Accepted>& others) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map_building {
 
 class MappedSession {
  public:
@@ -31,10 +31,10 @@ class MappedSession {
     LandmarkOffset offset;
   };
 
-  void begin(const Stop& stop);
-  void visit(const Stop& stop);
-  [[nodiscard]] std::vector<Accepted> accepted_at(const Stop& stop) const;
-  void arrive(const Stop& stop, const Accepted& at);
+  void begin(const drive::Stop& stop);
+  void visit(const drive::Stop& stop);
+  [[nodiscard]] std::vector<Accepted> accepted_at(const drive::Stop& stop) const;
+  void arrive(const drive::Stop& stop, const Accepted& at);
   void observe(const std::vector<Accepted>& others);
   [[nodiscard]] bool has_map_axes() const;
   [[nodiscard]] Arrival arrive_at(const Accepted& at);
@@ -42,7 +42,7 @@ class MappedSession {
   void note_tour();
   [[nodiscard]] bool dilutes(const std::string& landmark, const Matrix2& covariance) const;
   [[nodiscard]] Traversal in_map(const PositionEstimate& place) const;
-  void settle(const Stop& stop, const Accepted& at, const HeadingEstimate& heading);
+  void settle(const drive::Stop& stop, const Accepted& at, const HeadingEstimate& heading);
   [[nodiscard]] HeadingEstimate first_heading(const Sighting& at, const InitialHeading& first);
   [[nodiscard]] HeadingEstimate heading_after(const Accepted& at, const PositionEstimate& place);
   [[nodiscard]] HeadingEstimate with_yaw(const Sighting& at, const HeadingEstimate& heading);
@@ -69,4 +69,4 @@ class MappedSession {
       -std::numeric_limits<double>::infinity();  // compass readings that the start heading rests on
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map_building {
 namespace {
 
 constexpr double kFar = 10.0;      // standard errors
@@ -30,8 +30,8 @@ bool contradicts(double rms, double sd, double extent) {
 double survey_sd(const std::vector<SurveyPoint>& points, const Noise& noise) {
   std::vector<double> sds;
   sds.reserve(points.size());
-  for (const SurveyPoint& one : points) sds.push_back(stated_or(one.sd, noise.survey));
-  return median(std::move(sds));
+  for (const SurveyPoint& one : points) sds.push_back(estimation::stated_or(one.sd, noise.survey));
+  return statistics::median(std::move(sds));
 }
 
 /// Places by the map, and by what it is held against.
@@ -53,9 +53,10 @@ std::string explanation(const Places& places, const std::string& what, const cha
   const Alignment similar = align_by_similarity(places.in_map, places.measured);
   if (similar.rms < mended) {
     const double factor = similar.scale;
-    return joined("; it fits a map ", short_text(factor > 1.0 ? factor : 1.0 / factor, 3),
-                  factor > 1.0 ? " times as large" : " times as small", ": is the ", what,
-                  " in another unit, or is the wheels' travel off by as much?");
+    return text::joined("; it fits a map ",
+                        text::short_text(factor > 1.0 ? factor : 1.0 / factor, 3),
+                        factor > 1.0 ? " times as large" : " times as small", ": is the ", what,
+                        " in another unit, or is the wheels' travel off by as much?");
   }
   if (align_by_similarity(places.in_map, mirrored).rms < mended) {
     return "; it fits the mirrored " + what + " in another unit";
@@ -78,10 +79,11 @@ std::optional<Vector2> truth_at(const std::vector<TruthRow>& truth, double t) {
 }
 
 /// Where a session's robot was when it saw landmarks, by the adjustment and by its truth.
-Places tracked_places(const FitState& fit, const std::vector<TruthRow>& truth, int session) {
+Places tracked_places(const fitting::FitState& fit, const std::vector<TruthRow>& truth,
+                      int session) {
   Places places;
   for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
-    const PoseNode& node = fit.problem.poses[k];
+    const estimation::PoseNode& node = fit.problem.poses[k];
     if (node.session != session) continue;
     const std::optional<Vector2> at = truth_at(truth, node.t);
     if (!at) continue;
@@ -98,22 +100,22 @@ void doubt_against_survey(BuiltMap& built, const Noise& noise) {
   const SurveyComparison& comparison = built.on_survey->comparison;
   if (!comparison.contradicting.empty()) {
     const bool exchanged = 2 * comparison.exchanged.size() == comparison.contradicting.size();
-    built.warnings.push_back(joined("the survey contradicts the map at ",
-                                    listed(comparison.contradicting),
-                                    exchanged ? ": exchanged labels" : ""));
+    built.warnings.push_back(text::joined("the survey contradicts the map at ",
+                                          listed(comparison.contradicting),
+                                          exchanged ? ": exchanged labels" : ""));
   }
   const double sd = std::hypot(built.quality.median_sd, built.quality.from_adjusted,
                                survey_sd(built.on_survey->points, noise));
-  const CommonLandmarks common =
-      common_landmarks(positions_of(built.map), built.on_survey->points, comparison.contradicting);
+  const map::CommonLandmarks common = map::common_landmarks(
+      positions_of(built.map), built.on_survey->points, comparison.contradicting);
   if (!contradicts(comparison.rigid.rms, sd, extent_of(common.in_map))) return;
-  built.warnings.push_back(
-      joined("the survey contradicts the map, by ", short_text(comparison.rigid.rms, 3), " m (rms)",
-             explanation({common.in_map, common.surveyed}, "survey",
-                         "; is it of another place, or are names exchanged?")));
+  built.warnings.push_back(text::joined(
+      "the survey contradicts the map, by ", text::short_text(comparison.rigid.rms, 3), " m (rms)",
+      explanation({common.in_map, common.surveyed}, "survey",
+                  "; is it of another place, or are names exchanged?")));
 }
 
-void doubt_against_truth(BuiltMap& built, const FitState& fit,
+void doubt_against_truth(BuiltMap& built, const fitting::FitState& fit,
                          const std::vector<DrivenRecording>& recordings) {
   constexpr std::size_t kFewest = 5;
   constexpr double kOffAxle = 0.1;  // of the extent: a tracker's point is somewhere on the robot
@@ -123,9 +125,10 @@ void doubt_against_truth(BuiltMap& built, const FitState& fit,
     const double rms = align_rigidly(places.in_map, places.measured).rms;
     const double extent = extent_of(places.in_map);
     if (!contradicts(rms, built.quality.median_sd, extent) || rms < kOffAxle * extent) continue;
-    built.warnings.push_back(joined(
+    built.warnings.push_back(text::joined(
         recordings.size() > 1 ? recordings[s].name + ": " : std::string(),
-        "the truth contradicts where the map has the robot, by ", short_text(rms, 3), " m (rms)",
+        "the truth contradicts where the map has the robot, by ", text::short_text(rms, 3),
+        " m (rms)",
         explanation(places, "truth", "; is it of another drive, or is its clock another one?")));
   }
 }
@@ -134,11 +137,11 @@ void doubt_against_truth(BuiltMap& built) {
   for (const BuiltPath& path : built.paths) {
     if (!path.on_truth) continue;
     if (!contradicts(path.on_truth->rms, path.median_sd, extent_of(path.adjusted))) continue;
-    built.warnings.push_back(joined(built.paths.size() > 1 ? path.recording + ": " : std::string(),
-                                    "the truth contradicts the path, by ",
-                                    short_text(path.on_truth->rms, 3),
-                                    " m (rms): is the path's scale wrong, or the truth's unit?"));
+    built.warnings.push_back(
+        text::joined(built.paths.size() > 1 ? path.recording + ": " : std::string(),
+                     "the truth contradicts the path, by ", text::short_text(path.on_truth->rms, 3),
+                     " m (rms): is the path's scale wrong, or the truth's unit?"));
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

@@ -12,7 +12,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map_building {
 
 /// Adds to the warnings of a map that has its quality and lies on its survey, with the cheapest
 /// explanation that mends it: exchanged labels, a mirrored survey, a scale.
@@ -22,7 +22,7 @@ void doubt_against_survey(BuiltMap& built, const Noise& noise);
 void doubt_against_truth(BuiltMap& built);
 
 /// The same of a map of landmarks: truth of its robot, where that saw them.
-void doubt_against_truth(BuiltMap& built, const FitState& fit,
+void doubt_against_truth(BuiltMap& built, const fitting::FitState& fit,
                          const std::vector<DrivenRecording>& recordings);
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::map_building {
 namespace {
 
 constexpr double kShortestLoop = 1.0;  // m of driven path
@@ -23,17 +23,17 @@ struct Seen {
 class Reckoning {
  public:
   Reckoning(const SightedDrive& session, ReckonedMap& result)
-      : session_(session), result_(result), path_(driven_path(session.drive())) {}
+      : session_(session), result_(result), path_(drive::driven_path(session.drive())) {}
 
   void run() {
-    const std::vector<Stop> stops = stops_of(session_.recording().sightings);
+    const std::vector<drive::Stop> stops = drive::stops_of(session_.recording().sightings);
     if (stops.empty()) return;
     double time = stops.front().t;
     const InitialHeading first = session_.heading_at(time);
     PoseEstimate pose;
     pose.pose.heading = first.heading.heading;
     pose.covariance(2, 2) = first.heading.variance;
-    for (const Stop& stop : stops) {
+    for (const drive::Stop& stop : stops) {
       pose = session_.reckon(pose, time, stop.t, first.reading_time);
       time = stop.t;
       for (std::size_t k = stop.first; k < stop.first + stop.count; ++k) {
@@ -51,7 +51,7 @@ class Reckoning {
     seen.sum += here;
     ++seen.count;
     if (session_.is_left_out(sighting)) return;
-    const double path = path_at(session_.drive(), path_, sighting.t);
+    const double path = drive::path_at(session_.drive(), path_, sighting.t);
     if (seen.last_path >= 0.0 && path - seen.last_path < kShortestLoop) return;
     if (seen.last_path >= 0.0) {
       result_.misclosures.push_back((here - seen.last).norm() / (path - seen.last_path));
@@ -74,4 +74,4 @@ ReckonedMap reckoned_map(const std::vector<SightedDrive>& sessions) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map_building {
 
 struct ReckonedMap {
   /// Mean over all sightings of a landmark, of the first session that saw it, in that session's
@@ -22,4 +22,4 @@ struct ReckonedMap {
 /// By wheels and compass alone. Sightings that were left out have no part in the loops.
 [[nodiscard]] ReckonedMap reckoned_map(const std::vector<SightedDrive>& sessions);
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

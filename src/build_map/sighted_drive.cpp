@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "build_map/sighted_drive.hpp"
 
-namespace trussmap {
+namespace trussmap::map_building {
 
 LandmarkOffset SightedDrive::offset_of(const Sighting& sighting) const {
   LandmarkOffset offset = landmark_offset(sighting, model_.noise);
@@ -10,4 +10,4 @@ LandmarkOffset SightedDrive::offset_of(const Sighting& sighting) const {
   return offset;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map_building {
 
 /// What the best fit of everything says of one session, per sighting of its cleared recording.
 struct SessionGuide {
@@ -22,7 +22,8 @@ struct SessionGuide {
 class SightedDrive {
  public:
   /// Keeps references to all.
-  SightedDrive(const ClearedRecording& cleared, const Model& model, const SessionGuide& guide)
+  SightedDrive(const fitting::ClearedRecording& cleared, const Model& model,
+               const SessionGuide& guide)
       : cleared_(cleared), model_(model), guide_(guide) {}
 
   [[nodiscard]] const DrivenRecording& recording() const { return cleared_.recording; }
@@ -61,9 +62,9 @@ class SightedDrive {
     return static_cast<std::size_t>(&sighting - recording().sightings.data());
   }
 
-  const ClearedRecording& cleared_;
+  const fitting::ClearedRecording& cleared_;
   const Model& model_;
   const SessionGuide& guide_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::map_building

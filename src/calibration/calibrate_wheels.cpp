@@ -18,6 +18,8 @@
 #include <vector>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 /// A start, and what it leads to under the stated noise.
@@ -90,6 +92,10 @@ std::optional<WheelCalibration> calibrated_by_the_rest(
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::calibration {
+
 WheelCalibrationOptions calibration_options(const CalibrationOptions& options) {
   WheelCalibrationOptions result;
   result.problem.survey = options.survey;
@@ -100,11 +106,19 @@ WheelCalibrationOptions calibration_options(const CalibrationOptions& options) {
   return result;
 }
 
+}  // namespace trussmap::calibration
+
+namespace trussmap {
+
 WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
                                   const Model& model, const CalibrationOptions& options) {
-  require_well_formed(recordings, model.robot);
+  drive::require_well_formed(recordings, model.robot);
   return calibrate_wheels(recordings, model, calibration_options(options));
 }
+
+}  // namespace trussmap
+
+namespace trussmap::calibration {
 
 WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings,
                                   const Model& given, const WheelCalibrationOptions& options) {
@@ -129,4 +143,4 @@ WheelCalibration calibrate_wheels(const std::vector<DrivenRecording>& recordings
   return *std::move(by_all);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

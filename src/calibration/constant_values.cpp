@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <tuple>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 Channel nth_wheel(std::size_t k) {
@@ -35,7 +35,8 @@ std::vector<OwnGain> own_gains(const Robot& robot, const ChannelGains& gains) {
   std::vector<OwnGain> result;
   for (std::size_t k = 0; k < robot.columns.size(); ++k) {
     const Channel channel = nth_wheel(k);
-    if (is_of_drive(channel, robot)) result.push_back({robot.columns[k], {channel}, g(channel)});
+    if (effects::is_of_drive(channel, robot))
+      result.push_back({robot.columns[k], {channel}, g(channel)});
   }
   return result;
 }
@@ -99,7 +100,7 @@ void add_sensors(const Robot& robot, const ChannelGains& gains, const DriveScale
   const auto g = [&gains](Channel channel) { return gain_of(gains, channel); };
   const auto add = [&](const char* name, const char* unit, double value, Channel channel,
                        const char* note) {
-    if (!is_of_drive(channel, robot)) return;
+    if (!effects::is_of_drive(channel, robot)) return;
     result.push_back({name, unit, value, ConstantKind::other, {channel}, note});
   };
   add("sideways", "times", scales.sideways, sideways, "the way to the side, after the wheels'");
@@ -176,4 +177,4 @@ ChannelGains side_by_side(const Robot& robot, const ChannelGains& in_turn) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 /// g by channel, side by side; 0 of others.
 using ChannelGains = std::map<Channel, double>;
@@ -48,4 +48,4 @@ struct DriveScales {
 /// what those before it had corrected: they multiply.
 [[nodiscard]] ChannelGains side_by_side(const Robot& robot, const ChannelGains& in_turn);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -11,7 +11,7 @@
 #include <set>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 constexpr double kScatter = 4.0;  // chi^2/dof: noise stated half as large, and more
@@ -25,7 +25,7 @@ void remove(std::vector<Row>& stream, const std::set<std::size_t>& rows) {
 
 /// Of one stream of a session, each row once.
 std::set<std::size_t> rows_of(const std::vector<LeftOutRow>& all, int session,
-                              RecordingStream stream) {
+                              estimation::RecordingStream stream) {
   std::set<std::size_t> rows;
   for (const LeftOutRow& one : all) {
     if (one.session == session && one.stream == stream) rows.insert(one.row);
@@ -37,8 +37,8 @@ std::set<std::size_t> rows_of(const std::vector<LeftOutRow>& all, int session,
 
 bool is_contradicted(const WheelCalibration& found) {
   constexpr double kChance = 1e-6;
-  return !found.settled ||
-         (scatter_of(found) > kScatter && chi2_p_value(found.chi2, found.dof) < kChance);
+  return !found.settled || (scatter_of(found) > kScatter &&
+                            statistics::chi2_p_value(found.chi2, found.dof) < kChance);
 }
 
 bool explains_more(const WheelCalibration& rest, const std::optional<WheelCalibration>& by_all) {
@@ -85,14 +85,14 @@ std::vector<LeftOutRow> contradicting_rows(const std::vector<DrivenRecording>& r
 std::vector<DrivenRecording> without_rows(std::vector<DrivenRecording> recordings,
                                           const std::vector<LeftOutRow>& rows) {
   for (std::size_t s = 0; s < recordings.size(); ++s) {
-    const auto of = [&](RecordingStream stream) {
+    const auto of = [&](estimation::RecordingStream stream) {
       return rows_of(rows, static_cast<int>(s), stream);
     };
-    remove(recordings[s].sightings, of(RecordingStream::sightings));
-    remove(recordings[s].fixes, of(RecordingStream::fixes));
-    remove(recordings[s].loops, of(RecordingStream::loops));
+    remove(recordings[s].sightings, of(estimation::RecordingStream::sightings));
+    remove(recordings[s].fixes, of(estimation::RecordingStream::fixes));
+    remove(recordings[s].loops, of(estimation::RecordingStream::loops));
   }
   return recordings;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

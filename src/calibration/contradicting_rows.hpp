@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 /// Whether its errors are larger than noise makes them.
 [[nodiscard]] bool is_contradicted(const WheelCalibration& found);
@@ -31,4 +31,4 @@ namespace trussmap {
 [[nodiscard]] std::vector<DrivenRecording> without_rows(std::vector<DrivenRecording> recordings,
                                                         const std::vector<LeftOutRow>& rows);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

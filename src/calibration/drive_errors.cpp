@@ -11,6 +11,7 @@
 #include <cmath>
 
 namespace trussmap {
+using namespace calibration;
 
 double rms_end(const std::vector<DriveError>& errors) {
   double sum = 0.0;
@@ -28,7 +29,7 @@ namespace {
 
 /// m, of a row's wheels, each counted forwards.
 double mean_travel(const MotionRows& drive, std::size_t row, const Robot& robot) {
-  if (drive.wheels.empty()) return mean_travel(drive.motion(row), robot);
+  if (drive.wheels.empty()) return drive::mean_travel(drive.motion(row), robot);
   double sum = 0.0;
   int count = 0;
   for (const WheelColumn& wheel : drive.wheels) {
@@ -47,7 +48,7 @@ namespace {
 std::vector<DriveError> errors_of_axle(const std::vector<DrivenRecording>& recordings,
                                        const Model& model) {
   std::vector<DriveError> result;
-  const std::vector<DrivenRecording> corrected = without_effects(recordings, model);
+  const std::vector<DrivenRecording> corrected = odometry::without_effects(recordings, model);
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     const MotionRows& drive = corrected[k].drive;
     std::vector<TruthRow> truth = recordings[k].truth;
@@ -65,7 +66,8 @@ std::vector<DriveError> errors_of_axle(const std::vector<DrivenRecording>& recor
     one.end = (end.position() - Vector2(to.x, to.y)).norm();
     one.heading = wrap_angle(end.heading - to.heading);
     // Metres as recorded, so that they are the same for every model.
-    for (const DriveRow& row : rows_between(recordings[k].drive, from.t, to.t)) {
+    for (const odometry::DriveRow& row :
+         odometry::rows_between(recordings[k].drive, from.t, to.t)) {
       one.driven += row.part * mean_travel(recordings[k].drive, row.row, model.robot);
     }
     result.push_back(one);

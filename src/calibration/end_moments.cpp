@@ -7,7 +7,7 @@
 #include <complex>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 using Complex = std::complex<double>;
@@ -98,4 +98,4 @@ EndMoments end_moments(const TestPath& path, double wheelbase, const Vector2& sq
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -21,7 +21,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 struct EndMoments {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< of actual - calculated: m, m, rad
@@ -32,4 +32,4 @@ struct EndMoments {
 [[nodiscard]] EndMoments end_moments(const TestPath& path, double wheelbase,
                                      const Vector2& squared);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

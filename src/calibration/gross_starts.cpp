@@ -16,7 +16,7 @@
 #include <string>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 constexpr std::size_t kMostStarts = 4;
@@ -102,8 +102,8 @@ void add_steps(const MotionRows& drive, double from, double to, std::vector<Body
   constexpr double kStraight = 0.05;  // rad
   BodyMotion sum;
   bool any = false;
-  for (const DriveRow& row : rows_between(drive, from, to)) {
-    const BodyMotion body = motion_of(drive, row);
+  for (const odometry::DriveRow& row : odometry::rows_between(drive, from, to)) {
+    const BodyMotion body = odometry::motion_of(drive, row);
     sum = {sum.forward + body.forward, sum.sideways + body.sideways, sum.turn + body.turn};
     any = true;
     if (std::abs(sum.turn) < kStraight) continue;
@@ -239,7 +239,7 @@ class Disagreement {
         ratios.push_back((seen_from(poses[to.step], to) - a).norm() / one.length);
       }
     }
-    const double usual = median(ratios);
+    const double usual = statistics::median(ratios);
     if (!(usual > 0.0)) return 1.0;
     double sum = 0.0;
     for (const double one : ratios) sum += std::min(1.0, std::abs(one / usual - 1.0));
@@ -277,7 +277,7 @@ class Disagreement {
 enum class Beside { nothing, ratio, offset };
 
 Beside beside_turning(const std::vector<DrivenRecording>& recordings, const Robot& robot) {
-  if (has_steering(robot)) return Beside::offset;
+  if (drive::has_steering(robot)) return Beside::offset;
   return recordings.front().drive.of_two_wheels() ? Beside::ratio : Beside::nothing;
 }
 
@@ -365,7 +365,7 @@ std::vector<GrossStart> starts_by_places(const std::vector<DrivenRecording>& rec
 }  // namespace
 
 std::vector<GrossStart> gross_starts(const std::vector<DrivenRecording>& all, const Robot& robot,
-                                     const ProblemOptions& options) {
+                                     const estimation::ProblemOptions& options) {
   if (all.empty()) return {};
   std::vector<DrivenRecording> recordings = all;
   for (DrivenRecording& one : recordings) {
@@ -381,4 +381,4 @@ std::vector<GrossStart> gross_starts(const std::vector<DrivenRecording>& all, co
   return starts;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

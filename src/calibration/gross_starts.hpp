@@ -22,7 +22,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 /// g of the channels of effects, with the shape 1.
 struct GrossStart {
@@ -35,6 +35,6 @@ struct GrossStart {
 /// drives' wheels are taken in (with_wheels). `options`: what of the recordings is used.
 [[nodiscard]] std::vector<GrossStart> gross_starts(const std::vector<DrivenRecording>& recordings,
                                                    const Robot& robot,
-                                                   const ProblemOptions& options = {});
+                                                   const estimation::ProblemOptions& options = {});
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

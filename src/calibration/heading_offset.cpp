@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 constexpr double kWay = 0.2;          // m of driven path between the rows of a pair
@@ -29,12 +29,12 @@ struct MeanDirections {
 
 void add_pairs(MeanDirections& sum, const DrivenRecording& recording) {
   const MotionRows& drive = recording.drive;
-  const std::vector<double> path = driven_path(drive);
+  const std::vector<double> path = drive::driven_path(drive);
   std::optional<TruthRow> from;
   double start = 0.0;
   for (const TruthRow& row : recording.truth) {
     if (row.t < drive.start() || row.t > drive.t.back()) continue;
-    const double at = path_at(drive, path, row.t);
+    const double at = drive::path_at(drive, path, row.t);
     if (from && at - start < kWay) continue;
     if (from) {
       const Vector2 driven = reckoned(drive, {}, from->t, row.t).position();
@@ -87,11 +87,11 @@ std::string describe(const HeadingOffset& offset) {
   std::string text = fmt::format(
       "the truth's heading looks turned by {:.2f} rad ({:.0f} degrees) against the direction of "
       "travel; subtract that in truth.csv",
-      angle, kDegrees * angle);
+      angle, geometry::kDegrees * angle);
   if (std::abs(offset.angle) > std::numbers::pi - kTurned) {
     text += ", or change the sign of left and right in drive.csv where the wheels count backwards";
   }
   return text;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

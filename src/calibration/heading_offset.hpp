@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 struct HeadingOffset {
   double angle = 0.0;      ///< rad: the truth's heading less the robot's
@@ -34,4 +34,4 @@ struct HeadingOffset {
 /// stands out.
 [[nodiscard]] std::string describe(const HeadingOffset& offset);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

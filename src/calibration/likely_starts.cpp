@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 /// The stated constants with those of a start in their place.
@@ -36,11 +36,11 @@ std::vector<std::vector<double>> likely_starts(const std::vector<DrivenRecording
     }
   };
   // Places by turns that are wrong by a factor may be far off, those that are stated as well.
-  if (has_steering(robot)) add();
+  if (drive::has_steering(robot)) add();
   robot.mounted = started_places(recordings, robot);
   add();
   starts.push_back(stated);
   return starts;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -7,24 +7,25 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 constexpr double kFar = 10.0;  // standard deviations: what they add to a square is then 1 %
 
 bool spans(const Loop& loop, const Noise& noise) {
-  return std::hypot(loop.dx, loop.dy) > kFar * stated_or(loop.sd, noise.loop);
+  return std::hypot(loop.dx, loop.dy) > kFar * estimation::stated_or(loop.sd, noise.loop);
 }
 
 /// Whether two of the fixes are much further from each other than they may be off.
 bool spans(const std::vector<Fix>& fixes, const Noise& noise) {
   return std::any_of(fixes.begin(), fixes.end(), [&](const Fix& one) {
     return std::hypot(one.x - fixes.front().x, one.y - fixes.front().y) >
-           kFar * stated_or(one.sd, noise.fix);
+           kFar * estimation::stated_or(one.sd, noise.fix);
   });
 }
 
-bool measures(const DrivenRecording& one, const ProblemOptions& options, const Noise& noise) {
+bool measures(const DrivenRecording& one, const estimation::ProblemOptions& options,
+              const Noise& noise) {
   const auto sees_range = [](const Sighting& sighting) { return !sighting.standing(); };
   return (options.survey && !one.survey.empty()) || (options.truth && !one.truth.empty()) ||
          (options.fixes && spans(one.fixes, noise)) ||
@@ -36,9 +37,9 @@ bool measures(const DrivenRecording& one, const ProblemOptions& options, const N
 }  // namespace
 
 bool measures_distance(const std::vector<DrivenRecording>& recordings,
-                       const ProblemOptions& options, const Noise& noise) {
+                       const estimation::ProblemOptions& options, const Noise& noise) {
   return std::any_of(recordings.begin(), recordings.end(),
                      [&](const DrivenRecording& one) { return measures(one, options, noise); });
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -10,11 +10,11 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 /// By truth, a survey, ranges, or loops between poses that are apart by ten times what a loop is
 /// good to: those of another odometer, not those of a place met again.
 [[nodiscard]] bool measures_distance(const std::vector<DrivenRecording>& recordings,
-                                     const ProblemOptions& options, const Noise& noise);
+                                     const estimation::ProblemOptions& options, const Noise& noise);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

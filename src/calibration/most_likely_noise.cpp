@@ -11,39 +11,46 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 /// -2 log of the restricted likelihood, but for constants.
-double restricted_loss(const RecordingProblem& problem, const EffectParameters& parameters,
-                       const RecordingState& start) {
-  RecordingAdjustmentOptions options;
+double restricted_loss(const estimation::RecordingProblem& problem,
+                       const estimation::EffectParameters& parameters,
+                       const estimation::RecordingState& start) {
+  estimation::RecordingAdjustmentOptions options;
   options.landmark_uncertainties = false;
-  const RecordingAdjustment best = adjust_from(start, problem, parameters, options);
-  RecordingSystem system(problem, parameters);
+  const estimation::RecordingAdjustment best =
+      estimation::adjust_from(start, problem, parameters, options);
+  estimation::RecordingSystem system(problem, parameters);
   system.linearise(best.state, best.coefficients);
   system.factorise();
-  return best.chi2 + log_determinants(system, problem);
+  return best.chi2 + estimation::log_determinants(system, problem);
 }
 
 }  // namespace
 
 std::optional<WheelNoiseFit> most_likely_noise(const std::vector<DrivenRecording>& corrected,
-                                               const Model& model, const ProblemOptions& options,
-                                               const EffectParameters& parameters,
-                                               const RecordingState& start) {
-  const NoiseLoss loss = [&](const Eigen::VectorXd& log_k) {
+                                               const Model& model,
+                                               const estimation::ProblemOptions& options,
+                                               const estimation::EffectParameters& parameters,
+                                               const estimation::RecordingState& start) {
+  const fitting::NoiseLoss loss = [&](const Eigen::VectorXd& log_k) {
     Model tried = model;
     tried.noise.left = std::exp(log_k[0]);
     tried.noise.right = std::exp(log_k[1]);
-    return restricted_loss(make_problem(corrected, tried, options), parameters, start);
+    return restricted_loss(estimation::make_problem(corrected, tried, options), parameters, start);
   };
   const Vector2 stated(std::log(model.noise.left), std::log(model.noise.right));
   const auto in_reach = [&stated](Eigen::VectorXd log_k) -> Eigen::VectorXd {
-    return log_k.array().max(stated.array() - kReach).min(stated.array() + kReach);
+    return log_k.array()
+        .max(stated.array() - fitting::kReach)
+        .min(stated.array() + fitting::kReach);
   };
-  const Vector2 log_k = likeliest_noise({loss, in_reach, kMostSteps, kLeastGain}, stated).x;
-  const Matrix2 curvature = curvatures(loss, log_k);
+  const Vector2 log_k =
+      fitting::likeliest_noise({loss, in_reach, fitting::kMostSteps, fitting::kLeastGain}, stated)
+          .x;
+  const Matrix2 curvature = fitting::curvatures(loss, log_k);
   if (curvature(0, 0) <= 0.0 || curvature.determinant() <= 0.0) return std::nullopt;
   // The loss is -2 log L: its curvature is twice the information.
   const Matrix2 covariance = (0.5 * curvature).inverse();
@@ -55,4 +62,4 @@ std::optional<WheelNoiseFit> most_likely_noise(const std::vector<DrivenRecording
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

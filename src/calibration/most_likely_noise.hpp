@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 struct WheelNoiseFit {
   Vector2 k = Vector2::Zero();   ///< k_L, k_R, m^(1/2)
@@ -24,6 +24,7 @@ struct WheelNoiseFit {
 /// the likelihood has no maximum there: other noise hides that of the wheels.
 [[nodiscard]] std::optional<WheelNoiseFit> most_likely_noise(
     const std::vector<DrivenRecording>& corrected, const Model& model,
-    const ProblemOptions& options, const EffectParameters& parameters, const RecordingState& start);
+    const estimation::ProblemOptions& options, const estimation::EffectParameters& parameters,
+    const estimation::RecordingState& start);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

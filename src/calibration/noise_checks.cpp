@@ -13,6 +13,8 @@
 #include <Eigen/LU>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 constexpr double kConfidence = 0.95;
@@ -26,7 +28,7 @@ EllipseCount count_inside(const std::vector<double>& distances, std::string coor
   result.runs = static_cast<int>(distances.size());
   result.inside = static_cast<int>(
       std::count_if(distances.begin(), distances.end(), [&](double d) { return d <= limit; }));
-  result.p_value = binomial_p_value(result.inside, result.runs, kConfidence);
+  result.p_value = statistics::binomial_p_value(result.inside, result.runs, kConfidence);
   return result;
 }
 
@@ -47,7 +49,7 @@ double distance_p(std::vector<double> distances) {
   const auto n = static_cast<double>(distances.size());
   double largest = 0.0;
   for (std::size_t k = 0; k < distances.size(); ++k) {
-    const double expected = chi2_cdf(distances[k], 3.0);
+    const double expected = statistics::chi2_cdf(distances[k], 3.0);
     const auto rank = static_cast<double>(k);
     largest = std::max({largest, expected - rank / n, (rank + 1.0) / n - expected});
   }
@@ -63,13 +65,13 @@ double shape_p(const NoiseEstimate& estimate, double count) {
   // Bartlett's factor for a covariance in three dimensions.
   const double bartlett = 1.0 - 6.5 / (6.0 * count);
   const double statistic = bartlett * count * (ratio.trace() - std::log(determinant) - 3.0);
-  return chi2_p_value(std::max(statistic, 0.0), 4);
+  return statistics::chi2_p_value(std::max(statistic, 0.0), 4);
 }
 
 }  // namespace
 
 double ellipse95_scale(int dimensions) {
-  return std::sqrt(chi2_quantile(kConfidence, dimensions));
+  return std::sqrt(statistics::chi2_quantile(kConfidence, dimensions));
 }
 
 double nonlinear_share(const NoiseExperiment& experiment, const NoiseEstimate& estimate) {

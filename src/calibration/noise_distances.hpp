@@ -10,7 +10,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 inline constexpr double kBadNoiseFit = 0.01;  ///< p-value
 
@@ -37,7 +37,7 @@ template <typename Model>
 [[nodiscard]] std::vector<double> squared_distances(const EndErrors& errors, const Model& model,
                                                     const std::vector<int>& coordinates) {
   const Eigen::MatrixXd covariance = model.modelled(coordinates, coordinates);
-  const DenseLdlt factor(covariance);
+  const linalg::DenseLdlt factor(covariance);
   std::vector<double> result;
   for (const Eigen::Vector3d& e : errors) {
     const Eigen::VectorXd off = (e - model.centre)(coordinates);
@@ -46,4 +46,4 @@ template <typename Model>
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

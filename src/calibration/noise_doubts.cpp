@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 using Doubts = std::vector<std::string>;
@@ -50,8 +52,8 @@ void doubt_shape(Doubts& doubts, const EndErrors& errors, const NoiseExperiment&
                  const NoiseEstimate& estimate, const NoiseFit& fit) {
   constexpr double kSureMisfit = 1e-4;
   const bool misfit = fit.shape_p_value < kSureMisfit;
-  const bool degrees =
-      (misfit || fit.nonlinear) && shape_p_scaled(errors, experiment, kDegree) > kBadNoiseFit;
+  const bool degrees = (misfit || fit.nonlinear) &&
+                       shape_p_scaled(errors, experiment, geometry::kDegree) > kBadNoiseFit;
   if (degrees) {
     doubts.push_back("the headings fit if they are degrees, not as the radians expected");
   } else if (misfit) {

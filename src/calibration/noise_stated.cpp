@@ -11,6 +11,8 @@
 #include <Eigen/LU>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 SigmaCount count_within(const EndErrors& errors, const StatedNoise& stated,
@@ -24,7 +26,7 @@ SigmaCount count_within(const EndErrors& errors, const StatedNoise& stated,
     result.inside[k] = static_cast<int>(
         std::count_if(distances.begin(), distances.end(), [&](double d) { return d <= limit; }));
     result.expected[k] =
-        result.runs * chi2_cdf(limit, static_cast<double>(coordinates.which.size()));
+        result.runs * statistics::chi2_cdf(limit, static_cast<double>(coordinates.which.size()));
   }
   return result;
 }
@@ -60,7 +62,7 @@ StatedNoise stated_noise(const EndErrors& errors, const NoiseExperiment& experim
   }
   const double worse =
       count * (loss(observed, result.modelled) - loss(estimate.observed, estimate.modelled));
-  result.p_value = chi2_p_value(std::max(worse, 0.0), 2);
+  result.p_value = statistics::chi2_p_value(std::max(worse, 0.0), 2);
   return result;
 }
 

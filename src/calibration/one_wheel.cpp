@@ -8,7 +8,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 /// Logarithms of the left and the right wheel and of the wheelbase, over the nominal ones.
@@ -23,7 +23,7 @@ using ZeroSums = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 double wald_p(const LogSizes& sizes, const ZeroSums& zero) {
   const Eigen::VectorXd r = zero * sizes.u;
   const Eigen::MatrixXd S = zero * sizes.covariance * zero.transpose();
-  return chi2_p_value(r.dot(S.ldlt().solve(r)), static_cast<int>(zero.rows()));
+  return statistics::chi2_p_value(r.dot(S.ldlt().solve(r)), static_cast<int>(zero.rows()));
 }
 
 /// This one, and the wheelbase where it was sought.
@@ -84,4 +84,4 @@ std::optional<OneWheel> one_wheel(const Robot& robot, const std::vector<Constant
   return OneWheel{is_left, std::expm1(size), std::exp(size) * std::sqrt(variance), kept};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 /// Of two wheels that were found, and of the wheelbase, which was found as well or is as nominal;
 /// with the covariance of `values`. By Wald's tests of the logarithms: the other wheel and the
@@ -22,4 +22,4 @@ namespace trussmap {
                                                 const std::vector<ConstantValue>& values,
                                                 const Eigen::MatrixXd& covariance);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

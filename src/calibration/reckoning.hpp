@@ -9,12 +9,12 @@
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 /// `from` <= `to`, s; times outside of the drive are cut to it.
 [[nodiscard]] inline Pose reckoned(const MotionRows& drive, Pose pose, double from, double to) {
-  for (const DriveRow& row : rows_between(drive, from, to)) {
-    pose = compose(pose, displacement_of(motion_of(drive, row)));
+  for (const odometry::DriveRow& row : odometry::rows_between(drive, from, to)) {
+    pose = compose(pose, odometry::displacement_of(odometry::motion_of(drive, row)));
   }
   return pose;
 }
@@ -23,4 +23,4 @@ namespace trussmap {
   return {row.x, row.y, row.heading};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 // Far beyond what a marker put on by hand or two logs cut by hand are off by.
@@ -28,13 +28,14 @@ Pose way_back(const MotionRows& drive, double t, double late) {
   const double from = inside(std::min(t, t - late));
   const double to = inside(std::max(t, t - late));
   if (!(to > from)) return {};
-  const Pose way = segment_motion(segment_rows(drive, from, to)).displacement;
+  const Pose way =
+      estimation::segment_motion(estimation::segment_rows(drive, from, to)).displacement;
   return late > 0.0 ? inverse(way) : way;
 }
 
 /// What one second of lateness does to a truth row: the way back over the lateness of an earlier
 /// fit, which is exact there; without one, that of a moment about the row.
-ViewPattern per_second(const MotionRows& drive, double t, double late) {
+effects::ViewPattern per_second(const MotionRows& drive, double t, double late) {
   constexpr double kMoment = 0.15;     // s: longer than a row's jitter
   constexpr double kTellable = 0.005;  // s
   Pose back;
@@ -45,15 +46,15 @@ ViewPattern per_second(const MotionRows& drive, double t, double late) {
   } else {
     back = way_back(drive, t, late);
   }
-  ViewPattern result;
+  effects::ViewPattern result;
   result.ahead = back.x / seconds;
   result.left = back.y / seconds;
   result.heading = back.heading / seconds;
   return result;
 }
 
-ViewPattern times(const ViewPattern& pattern, double factor) {
-  ViewPattern result;
+effects::ViewPattern times(const effects::ViewPattern& pattern, double factor) {
+  effects::ViewPattern result;
   result.ahead = factor * pattern.ahead;
   result.left = factor * pattern.left;
   result.heading = factor * pattern.heading;
@@ -84,14 +85,15 @@ std::map<int, TruthClock> clocks_of(const std::vector<DrivenRecording>& recordin
 }
 
 /// Patterns of the rows of truth, or of the fixes.
-using Patterns = std::vector<std::vector<ViewPattern>> EffectPattern::*;
+using Patterns = std::vector<std::vector<effects::ViewPattern>> estimation::EffectPattern::*;
 
 /// One value for all rows of all recordings.
 template <typename Row>
-EffectPattern everywhere(const char* name, const ViewPattern& unit, double prior_sd,
-                         const std::vector<DrivenRecording>& recordings,
-                         std::vector<Row> Observations::*rows, Patterns patterns) {
-  EffectPattern result;
+estimation::EffectPattern everywhere(const char* name, const effects::ViewPattern& unit,
+                                     double prior_sd,
+                                     const std::vector<DrivenRecording>& recordings,
+                                     std::vector<Row> Observations::*rows, Patterns patterns) {
+  estimation::EffectPattern result;
   result.name = name;
   result.prior_sd = prior_sd;
   for (const DrivenRecording& one : recordings) {
@@ -102,10 +104,10 @@ EffectPattern everywhere(const char* name, const ViewPattern& unit, double prior
 
 /// How late one session's rows are, with `late_at` what an earlier fit has found of that.
 template <typename Row, typename LateAt>
-EffectPattern lateness_of(int session, const std::vector<DrivenRecording>& recordings,
-                          std::vector<Row> Observations::*rows, Patterns patterns,
-                          const std::vector<int>& sessions, const LateAt& late_at) {
-  EffectPattern result;
+estimation::EffectPattern lateness_of(int session, const std::vector<DrivenRecording>& recordings,
+                                      std::vector<Row> Observations::*rows, Patterns patterns,
+                                      const std::vector<int>& sessions, const LateAt& late_at) {
+  estimation::EffectPattern result;
   result.prior_sd = kLateSd;
   (result.*patterns).resize(recordings.size());
   for (std::size_t k = 0; k < recordings.size(); ++k) {
@@ -118,9 +120,9 @@ EffectPattern lateness_of(int session, const std::vector<DrivenRecording>& recor
 }
 
 /// The clock that a lateness grows by.
-EffectPattern drift_of(const EffectPattern& late, const std::vector<DrivenRecording>& recordings,
-                       double start) {
-  EffectPattern result = late;
+estimation::EffectPattern drift_of(const estimation::EffectPattern& late,
+                                   const std::vector<DrivenRecording>& recordings, double start) {
+  estimation::EffectPattern result = late;
   result.name = "truth's clock";
   result.prior_sd = kClockSd;
   for (std::size_t k = 0; k < recordings.size(); ++k) {
@@ -131,51 +133,52 @@ EffectPattern drift_of(const EffectPattern& late, const std::vector<DrivenRecord
   return result;
 }
 
-constexpr ViewPattern kAhead{.ahead = 1.0};
-constexpr ViewPattern kLeft{.left = 1.0};
-constexpr ViewPattern kTurned{.heading = 1.0};
+constexpr effects::ViewPattern kAhead{.ahead = 1.0};
+constexpr effects::ViewPattern kLeft{.left = 1.0};
+constexpr effects::ViewPattern kTurned{.heading = 1.0};
 
-EffectParameters of_truth(const std::vector<DrivenRecording>& recordings,
-                          const std::vector<int>& sessions, const TruthAlignment& prior) {
-  EffectParameters parameters;
+estimation::EffectParameters of_truth(const std::vector<DrivenRecording>& recordings,
+                                      const std::vector<int>& sessions,
+                                      const TruthAlignment& prior) {
+  estimation::EffectParameters parameters;
   const std::map<int, TruthClock> clocks = clocks_of(recordings, &Observations::truth, sessions);
   if (clocks.empty()) return parameters;
-  const auto add = [&](const char* name, const ViewPattern& unit, double sd) {
-    parameters.push_back(
-        everywhere(name, unit, sd, recordings, &Observations::truth, &EffectPattern::truths));
+  const auto add = [&](const char* name, const effects::ViewPattern& unit, double sd) {
+    parameters.push_back(everywhere(name, unit, sd, recordings, &Observations::truth,
+                                    &estimation::EffectPattern::truths));
   };
   add("truth's point, ahead", kAhead, kPlaceSd);
   add("truth's point, left", kLeft, kPlaceSd);
   add("truth's heading", kTurned, kHeadingSd);
   for (const auto& [session, start] : clocks) {
     const int number = session;
-    EffectPattern late =
-        lateness_of(number, recordings, &Observations::truth, &EffectPattern::truths, sessions,
-                    [&](double t) { return lateness(prior, number, t); });
+    estimation::EffectPattern late =
+        lateness_of(number, recordings, &Observations::truth, &estimation::EffectPattern::truths,
+                    sessions, [&](double t) { return lateness(prior, number, t); });
     late.name = "truth late";
-    EffectPattern clock = drift_of(late, recordings, start.start);
+    estimation::EffectPattern clock = drift_of(late, recordings, start.start);
     parameters.push_back(std::move(late));
     parameters.push_back(std::move(clock));
   }
   return parameters;
 }
 
-EffectParameters of_fixes(const std::vector<DrivenRecording>& recordings,
-                          const std::vector<int>& sessions, const FixAlignment& prior) {
-  EffectParameters parameters;
+estimation::EffectParameters of_fixes(const std::vector<DrivenRecording>& recordings,
+                                      const std::vector<int>& sessions, const FixAlignment& prior) {
+  estimation::EffectParameters parameters;
   const std::map<int, TruthClock> clocks = clocks_of(recordings, &Observations::fixes, sessions);
   if (clocks.empty()) return parameters;
   for (const auto& [name, unit] :
        {std::pair{"antenna, ahead", kAhead}, std::pair{"antenna, left", kLeft}}) {
-    parameters.push_back(
-        everywhere(name, unit, kPlaceSd, recordings, &Observations::fixes, &EffectPattern::fixes));
+    parameters.push_back(everywhere(name, unit, kPlaceSd, recordings, &Observations::fixes,
+                                    &estimation::EffectPattern::fixes));
   }
   for (const auto& [session, start] : clocks) {
     const auto known = prior.late.find(session);
     const double so_far = known == prior.late.end() ? 0.0 : known->second;
-    EffectPattern late =
-        lateness_of(session, recordings, &Observations::fixes, &EffectPattern::fixes, sessions,
-                    [so_far](double) { return so_far; });
+    estimation::EffectPattern late =
+        lateness_of(session, recordings, &Observations::fixes, &estimation::EffectPattern::fixes,
+                    sessions, [so_far](double) { return so_far; });
     late.name = "fixes late";
     parameters.push_back(std::move(late));
   }
@@ -183,9 +186,9 @@ EffectParameters of_fixes(const std::vector<DrivenRecording>& recordings,
 }
 
 template <typename Row>
-EffectParameters of_mounting(const std::vector<DrivenRecording>& recordings,
-                             std::vector<Row> Observations::*rows, Patterns patterns) {
-  EffectParameters parameters;
+estimation::EffectParameters of_mounting(const std::vector<DrivenRecording>& recordings,
+                                         std::vector<Row> Observations::*rows, Patterns patterns) {
+  estimation::EffectParameters parameters;
   for (const auto& [name, unit, sd] :
        {std::tuple{"sensor, ahead", kAhead, kPlaceSd}, std::tuple{"sensor, left", kLeft, kPlaceSd},
         std::tuple{"sensor, yaw", kTurned, kYawSd}}) {
@@ -230,7 +233,7 @@ class CoefficientReader {
 }  // namespace
 
 ReferencesUsed references_in(const std::vector<DrivenRecording>& recordings,
-                             const ProblemOptions& used) {
+                             const estimation::ProblemOptions& used) {
   const auto any = [&](const auto& has) {
     return std::any_of(recordings.begin(), recordings.end(), has);
   };
@@ -244,19 +247,21 @@ ReferencesUsed references_in(const std::vector<DrivenRecording>& recordings,
           used.loops && any([](const DrivenRecording& one) { return !one.loops.empty(); })};
 }
 
-EffectParameters reference_alignment(const std::vector<DrivenRecording>& recordings,
-                                     const ReferencesUsed& used, const std::vector<int>& sessions,
-                                     const ReferenceAlignment& prior) {
-  EffectParameters parameters;
-  const auto add = [&parameters](EffectParameters more) {
-    for (EffectPattern& one : more) parameters.push_back(std::move(one));
+estimation::EffectParameters reference_alignment(const std::vector<DrivenRecording>& recordings,
+                                                 const ReferencesUsed& used,
+                                                 const std::vector<int>& sessions,
+                                                 const ReferenceAlignment& prior) {
+  estimation::EffectParameters parameters;
+  const auto add = [&parameters](estimation::EffectParameters more) {
+    for (estimation::EffectPattern& one : more) parameters.push_back(std::move(one));
   };
   if (used.truth) add(of_truth(recordings, sessions, prior.truth));
   if (used.fixes) add(of_fixes(recordings, sessions, prior.fixes));
   if (used.sensor) {
-    add(of_mounting(recordings, &Observations::sightings, &EffectPattern::sightings));
+    add(of_mounting(recordings, &Observations::sightings, &estimation::EffectPattern::sightings));
   }
-  if (used.scanner) add(of_mounting(recordings, &Observations::loops, &EffectPattern::loops));
+  if (used.scanner)
+    add(of_mounting(recordings, &Observations::loops, &estimation::EffectPattern::loops));
   return parameters;
 }
 
@@ -321,4 +326,4 @@ std::vector<DrivenRecording> aligned(const std::vector<DrivenRecording>& recordi
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -22,7 +22,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 struct ReferenceAlignment {
   TruthAlignment truth;
@@ -38,16 +38,15 @@ struct ReferencesUsed {
   bool scanner = true;  ///< loops
 };
 [[nodiscard]] ReferencesUsed references_in(const std::vector<DrivenRecording>& recordings,
-                                           const ProblemOptions& used);
+                                           const estimation::ProblemOptions& used);
 
 /// Coefficients of all that, of truth, fixes, sensor and scanner in turn, each in this order,
 /// sessions in rising order, late and clock in turn. Weak priors keep what a motion does not show
 /// near 0. None of what no recording has or is not used. `sessions`: of each recording, where
 /// several are segments of one drive; empty: 0, 1, 2 ... `prior`: what an earlier fit has found.
-[[nodiscard]] EffectParameters reference_alignment(const std::vector<DrivenRecording>& recordings,
-                                                   const ReferencesUsed& used,
-                                                   const std::vector<int>& sessions,
-                                                   const ReferenceAlignment& prior = {});
+[[nodiscard]] estimation::EffectParameters reference_alignment(
+    const std::vector<DrivenRecording>& recordings, const ReferencesUsed& used,
+    const std::vector<int>& sessions, const ReferenceAlignment& prior = {});
 
 /// The estimated coefficients of those parameters and their covariance, read: places from the
 /// axle's centre, what is surer than a place that is none (0.1 m, 0.1 rad).
@@ -65,4 +64,4 @@ struct ReferencesUsed {
 [[nodiscard]] std::vector<DrivenRecording> aligned(const std::vector<DrivenRecording>& recordings,
                                                    const TruthAlignment& alignment);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

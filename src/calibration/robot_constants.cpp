@@ -20,6 +20,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 /// What is known of constants: coefficients of channels, and what becomes of them.
@@ -201,13 +203,14 @@ KnownGains known_of(const std::vector<EffectEstimate>& effects, const Robot& rob
 }
 
 /// Of these effects' only coefficients, from the fit.
-Eigen::MatrixXd covariance_in(const FitState& fit, const std::vector<std::size_t>& effects) {
+Eigen::MatrixXd covariance_in(const fitting::FitState& fit,
+                              const std::vector<std::size_t>& effects) {
   const auto size = std::ssize(effects);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);
-  const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
+  const std::vector<int> unknown = estimation::unknown_coefficients(fit.columns.border);
   std::vector<std::pair<Eigen::Index, Eigen::Index>> places;  // here, there
   for (std::size_t k = 0; k < unknown.size(); ++k) {
-    const Coefficient& one = fit.columns.coefficients[idx(unknown[k])];
+    const fitting::Coefficient& one = fit.columns.coefficients[idx(unknown[k])];
     const auto found = std::find(effects.begin(), effects.end(), one.effect);
     if (found != effects.end()) {
       places.emplace_back(found - effects.begin(), static_cast<Eigen::Index>(k));

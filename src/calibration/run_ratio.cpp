@@ -9,7 +9,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 RunRatio ratio_of(const std::vector<RunOfRatio>& runs, bool stated) {
   double products = 0.0;
@@ -27,7 +27,7 @@ RunRatio ratio_of(const std::vector<RunOfRatio>& runs, bool stated) {
   const double dof = static_cast<double>(runs.size()) - 1.0;
   if (dof > 0.0) result.scatter = std::sqrt(chi2 / dof);
   if (stated) {
-    result.p_value = chi2_p_value(chi2, static_cast<int>(dof));
+    result.p_value = statistics::chi2_p_value(chi2, static_cast<int>(dof));
     const bool wider = result.p_value < kSureOfRuns;
     result.ratio.standard_error = (wider ? result.scatter : 1.0) / std::sqrt(squares);
     result.ratio.dof = wider ? dof : kStatedDof;
@@ -68,4 +68,4 @@ std::optional<RatioBeside> ratio_beside(const std::vector<RunOfRatio>& runs, boo
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -13,7 +13,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 inline constexpr double kStatedDof = 1e6;    ///< behind a standard error that was stated
 inline constexpr double kSureOfRuns = 1e-3;  ///< p below which runs contradict each other
@@ -43,4 +43,4 @@ struct RatioBeside {
 [[nodiscard]] std::optional<RatioBeside> ratio_beside(const std::vector<RunOfRatio>& runs,
                                                       bool stated, const std::vector<double>& z);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

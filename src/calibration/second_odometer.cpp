@@ -30,7 +30,7 @@ std::vector<Loop> second_odometer_loops(const Recording& second, const Model& mo
   if (!(every > 0.0)) throw std::invalid_argument("motions last longer than 0 s");
   MotionRows own = with_wheels(second, model.robot).drive;
   own.heading.clear();  // a compass would tie motions together that count as independent
-  own = with_gyro(own, model.robot, model.noise);  // once, not for every motion
+  own = odometry::with_gyro(own, model.robot, model.noise);  // once, not for every motion
   if (own.rows() < 2 || drive.rows() < 2) {
     throw std::invalid_argument("a drive has two rows at least");
   }
@@ -46,11 +46,11 @@ std::vector<Loop> second_odometer_loops(const Recording& second, const Model& mo
     from = t;
   }
   if (loops.empty()) {
-    throw std::invalid_argument(
-        joined("the drives have ", short_text(std::max(last - first, 0.0)),
-               " s in common, expected ", short_text(every), " s at least: from ",
-               short_text(own.start()), " to ", short_text(own.t.back()), " s the one, from ",
-               short_text(drive.start()), " to ", short_text(drive.t.back()), " s the other"));
+    throw std::invalid_argument(text::joined(
+        "the drives have ", text::short_text(std::max(last - first, 0.0)),
+        " s in common, expected ", text::short_text(every), " s at least: from ",
+        text::short_text(own.start()), " to ", text::short_text(own.t.back()), " s the one, from ",
+        text::short_text(drive.start()), " to ", text::short_text(drive.t.back()), " s the other"));
   }
   return loops;
 }

@@ -18,7 +18,7 @@
 
 #include <Eigen/QR>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 /// The places that a channel moves.
@@ -85,9 +85,10 @@ std::vector<SeenMotion> motions_of_sightings(const DrivenRecording& recording) {
   Before now{recording.drive.start(), {}, Vector2::Zero()};
   for (const Sighting& sighting : recording.sightings) {
     if (!sighting.locates() || sighting.t < now.t) continue;
-    for (const DriveRow& row : rows_between(recording.drive, now.t, sighting.t)) {
-      const BodyMotion body = motion_of(recording.drive, row);
-      now.pose = compose(now.pose, displacement_of(body));
+    for (const odometry::DriveRow& row :
+         odometry::rows_between(recording.drive, now.t, sighting.t)) {
+      const BodyMotion body = odometry::motion_of(recording.drive, row);
+      now.pose = compose(now.pose, odometry::displacement_of(body));
       now.way += std::hypot(body.forward, body.sideways);
       now.turned += std::abs(body.turn);
     }
@@ -102,7 +103,7 @@ std::vector<SeenMotion> motions_of_sightings(const DrivenRecording& recording) {
                       error_of(now.way - from.way, now.turned - from.turned,
                                std::max(from.offset.norm(), now.offset.norm()))});
   }
-  return trussmap::thinned(std::move(result), kMostMotions);
+  return trussmap::statistics::thinned(std::move(result), kMostMotions);
 }
 
 /// By all of these, those that contradict the others with less say.
@@ -132,7 +133,7 @@ std::optional<Mounting> place_by(const std::vector<SeenMotion>& motions) {
     if (solver.rank() < 4) return std::nullopt;
     found = solver.solve(weights.matrix().asDiagonal() * b);
     const Eigen::ArrayXd off = ((A * found - b).array() / sds.array()).abs();
-    const double usual = median({off.data(), off.data() + off.size()});
+    const double usual = statistics::median({off.data(), off.data() + off.size()});
     weights = sds.array().inverse() / (1.0 + (off / std::max(2.0 * usual, 1e-12)).square()).sqrt();
   }
   const Mounting place{found[2], found[3], std::atan2(found[1], found[0])};
@@ -147,7 +148,7 @@ std::optional<Mounting> place_by(const std::vector<DrivenRecording>& recordings,
     const std::vector<SeenMotion> own = motions_of(one);
     all.insert(all.end(), own.begin(), own.end());
   }
-  return place_by(trussmap::thinned(std::move(all), kMostMotions));
+  return place_by(trussmap::statistics::thinned(std::move(all), kMostMotions));
 }
 
 }  // namespace
@@ -188,4 +189,4 @@ Mountings started_places(const std::vector<DrivenRecording>& recordings, const R
   return mounted;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

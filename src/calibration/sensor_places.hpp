@@ -23,7 +23,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 /// The model with its constant effects of places in [robot]; they stay, with 0.
 [[nodiscard]] Model with_places_in_robot(Model model);
@@ -39,4 +39,4 @@ using MountingPlace = std::optional<Mounting> Mountings::*;
 [[nodiscard]] Mountings started_places(const std::vector<DrivenRecording>& recordings,
                                        const Robot& robot);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

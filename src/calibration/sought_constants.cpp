@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 constexpr double kUseless = 0.1;  // a standard error of a ratio that is no calibration
@@ -132,7 +132,7 @@ std::vector<SoughtConstant> sought_constants(const Robot& robot) {
   std::vector<SoughtConstant> result;
   for (const ChannelFacts& one : channels()) {
     const std::optional<std::size_t> wheel = wheel_of(one.channel);
-    if (!wheel || !is_of_drive(one.channel, robot)) continue;
+    if (!wheel || !effects::is_of_drive(one.channel, robot)) continue;
     const std::string& column = robot.columns[*wheel];
     result.push_back({.name = "radius of " + column,
                       .channel = one.channel,
@@ -238,4 +238,4 @@ std::vector<double> refined(const std::vector<double>& g, const Wanted& wanted, 
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

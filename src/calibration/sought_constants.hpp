@@ -15,7 +15,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 /// What is sought: g of a channel, with the shape 1.
 struct SoughtConstant {
@@ -72,4 +72,4 @@ using Wanted = std::vector<bool>;
 [[nodiscard]] std::vector<double> refined(const std::vector<double>& g, const Wanted& wanted,
                                           const Robot& robot, const Eigen::VectorXd& found);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

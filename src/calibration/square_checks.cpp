@@ -14,6 +14,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 using Eigen::Vector2d;
@@ -121,6 +123,10 @@ SquareConsistency square_consistency(const SquareClusters& clusters, const Squar
   return result;
 }
 
+}  // namespace trussmap
+
+namespace trussmap::calibration {
+
 void widen_errors(SquareRound& round) {
   SquareSetup certain = round.setup;
   certain.scale = {round.setup.scale.value, 0.0, 0.0};
@@ -135,6 +141,10 @@ void widen_errors(SquareRound& round) {
     widen(round.formulas, by);
   }
 }
+
+}  // namespace trussmap::calibration
+
+namespace trussmap {
 
 std::vector<std::string> square_doubts(const SquareClusters& clusters, const SquareSetup& setup) {
   constexpr double kClearlyBetter = 0.3;  // residual after / before exchanging the labels

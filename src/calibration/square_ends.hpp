@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 struct SquareEnds {
   PathError cw;
@@ -38,4 +38,4 @@ struct SquareEnds {
 /// contradict each other; nothing where they do not.
 void widen_errors(SquareRound& round);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

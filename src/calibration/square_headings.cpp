@@ -15,6 +15,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 /// alpha and beta of the exact solution by the centres: cw x, y, ccw x, y; rad/m.
@@ -64,13 +66,13 @@ Estimate mapped(const Estimate& from, double value, double slope) {
 /// E_b by alpha and E_d by beta.
 void add_ratios(SquareHeadings& result, const SquareSetup& setup) {
   const double scale = setup.scale.value;
-  const double lacking = kQuarterTurn - result.alpha.value;
+  const double lacking = geometry::kQuarterTurn - result.alpha.value;
   if (!(lacking > 0.0)) {
     throw SolveError(
         "the orientation errors are as large as the square's turns: no wheelbase explains them; "
         "are the headings in radians?");
   }
-  const double e_b = scale * kQuarterTurn / lacking;
+  const double e_b = scale * geometry::kQuarterTurn / lacking;
   result.wheelbase_ratio =
       also_by(mapped(result.alpha, e_b, e_b / lacking), e_b / scale, setup.scale);
   const double per_beta = setup.wheelbase * e_b / (2.0 * setup.side * scale);

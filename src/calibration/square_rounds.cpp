@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 /// The squares say how straight the robot drives, and that depends a little on the scale: each time

@@ -15,6 +15,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 /// What of the list is there to be told.
@@ -69,7 +71,8 @@ class Told {
 
   /// By what the length that turns go by is to be multiplied.
   [[nodiscard]] std::optional<double> length() const {
-    const bool by_wheelbase = has_left_and_right(robot_) || robot_.drive == DriveKind::mecanum;
+    const bool by_wheelbase =
+        drive::has_left_and_right(robot_) || robot_.drive == DriveKind::mecanum;
     const RobotConstant* found = find(by_wheelbase                       ? "wheelbase"
                                       : robot_.drive == DriveKind::omni3 ? "radius"
                                                                          : "length");
@@ -173,6 +176,10 @@ constexpr double kMoves = 0.01;  // m/s, below which a row is rest
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::calibration {
+
 std::vector<StackValue> stack_values(const Robot& robot, const std::vector<RobotConstant>& list,
                                      const std::vector<ConstantValue>& values, bool mean) {
   const Told told(robot, list, values, mean);
@@ -181,6 +188,10 @@ std::vector<StackValue> stack_values(const Robot& robot, const std::vector<Robot
   add_road_runner(told, robot, out);
   return out;
 }
+
+}  // namespace trussmap::calibration
+
+namespace trussmap {
 
 RobotConstants with_velocity_variances(RobotConstants constants,
                                        const std::vector<DrivenRecording>& recordings,
@@ -199,7 +210,7 @@ RobotConstants with_velocity_variances(RobotConstants constants,
     double from = drive.start();
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       const double duration = drive.t[row] - from;
-      const double travel = mean_travel(drive.motion(row), model.robot);
+      const double travel = drive::mean_travel(drive.motion(row), model.robot);
       if (row % step == 0 && travel > kMoves * duration) {
         const PoseEstimate moved =
             dead_reckon({}, drive, from, drive.t[row], model.robot, model.noise);

@@ -17,7 +17,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 /// Of those constants of the list that were determined. `robot`: as the model given has it, of
 /// which multipliers are multiples; `values`: all that was found; `mean`: whether the wheels' mean
@@ -27,4 +27,4 @@ namespace trussmap {
                                                    const std::vector<ConstantValue>& values,
                                                    bool mean);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -11,7 +11,7 @@
 
 #include <Eigen/QR>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 /// What one stretch turns: by the wheels, by their ratio, by a gyro's bias; and by the other
@@ -29,8 +29,8 @@ std::size_t rows_of_stretch(std::size_t rows) {
 
 Turned turned_by_wheels(const MotionRows& drive, double from, double to) {
   Turned result;
-  for (const DriveRow& row : rows_between(drive, from, to)) {
-    const BodyMotion body = motion_of(drive, row);
+  for (const odometry::DriveRow& row : odometry::rows_between(drive, from, to)) {
+    const BodyMotion body = odometry::motion_of(drive, row);
     result.by += Eigen::Vector3d(body.turn, body.forward, 0.0);
   }
   return result;
@@ -137,4 +137,4 @@ std::optional<GrossStart> start_by_turns(const std::vector<DrivenRecording>& rec
   return start;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -9,7 +9,7 @@
 
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 /// Where other constants are as near as that to the stated ones, those are a start themselves.
 inline constexpr double kNearTurn = 0.1;
@@ -19,4 +19,4 @@ inline constexpr double kNearRatio = 0.05;
 [[nodiscard]] std::optional<GrossStart> start_by_turns(
     const std::vector<DrivenRecording>& recordings, const Robot& robot);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -21,7 +21,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 constexpr double kPossible = 10.0;  // chi^2/dof
@@ -238,7 +238,8 @@ WheelCalibration calibrate_steered(const std::vector<DrivenRecording>& recording
     why = std::current_exception();
   }
   for (int round = 0; round < kMostSeldom; ++round) {
-    if (found && (found->dof <= 0 || chi2_p_value(found->chi2, found->dof) > kFits)) break;
+    if (found && (found->dof <= 0 || statistics::chi2_p_value(found->chi2, found->dof) > kFits))
+      break;
     std::optional<WheelCalibration> more = with_one_more({recordings, model, found}, options);
     if (!more) break;
     found = std::move(more);
@@ -247,4 +248,4 @@ WheelCalibration calibrate_steered(const std::vector<DrivenRecording>& recording
   return *std::move(found);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

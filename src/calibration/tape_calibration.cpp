@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 void require_measured(const std::vector<TapedRun>& runs, double wheelbase) {

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 constexpr double kLeastShare = 5e-4;  // of a ratio: readings are rounded to some such share
@@ -42,7 +42,7 @@ void doubt_outliers(const TapedGroup& group, TapeCalibration& found) {
     const double error =
         std::hypot(rest.scatter * std::sqrt(one.variance), rest.ratio.standard_error * one.x);
     if (!(error > 0.0) || std::abs(off) < kLeastOff * std::abs(one.x)) continue;
-    const double p = 2.0 * student_p_value(std::abs(off) / error, rest.ratio.dof);
+    const double p = 2.0 * statistics::student_p_value(std::abs(off) / error, rest.ratio.dof);
     if (p * static_cast<double>(count) > kSureOfRuns) continue;
     found.doubts.push_back(fmt::format(
         "{} is {:.2g} {} from what all others say, which scatter by {:.2g} {}: a slip, a misread "
@@ -123,4 +123,4 @@ Estimate judged_ratio(const TapedGroup& group, TapeCalibration& found) {
   return ratio;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

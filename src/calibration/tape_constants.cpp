@@ -17,7 +17,8 @@ Estimate scaled(double value, double size, const Estimate& by) {
 Estimate wheel_factor(double value, double by_ratio, const GeometryErrors& in_force,
                       const TapeCalibration& found) {
   const Estimate factor = scaled(value, by_ratio * in_force.diameter_ratio, *found.diameter_ratio);
-  return found.scale ? also_by(factor, value / found.scale->value, *found.scale) : factor;
+  return found.scale ? calibration::also_by(factor, value / found.scale->value, *found.scale)
+                     : factor;
 }
 
 double coefficient_of(const Model& model, const char* name) {

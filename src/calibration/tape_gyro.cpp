@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 std::vector<TapedRun> with_gyro(const std::vector<TapedRun>& runs) {
@@ -21,7 +21,7 @@ std::vector<TapedRun> with_gyro(const std::vector<TapedRun>& runs) {
 
 /// rad/s that the gyro reads at rest.
 Estimate rate_at_rest(const std::vector<TapedRun>& rests, TapeCalibration& found) {
-  TapedGroup group{"rest", "rests", "deg", kDegrees, ""};
+  TapedGroup group{"rest", "rests", "deg", geometry::kDegrees, ""};
   group.stated = all_stated(rests, &TapedRun::sd_gyro, "an sd_gyro", group, found);
   for (const TapedRun& run : rests) {
     const double variance = group.stated ? run.sd_gyro * run.sd_gyro : run.seconds;
@@ -48,7 +48,7 @@ Estimate rate_at_rest(const std::vector<TapedRun>& rests, TapeCalibration& found
 /// Turns of the gyro, what it reads at rest taken off, beside true ones.
 TapedGroup group_of_readings(const std::vector<TapedRun>& turns, double rate,
                              TapeCalibration& found) {
-  TapedGroup group{"turn by the gyro", "turns by the gyro", "deg", kDegrees,
+  TapedGroup group{"turn by the gyro", "turns by the gyro", "deg", geometry::kDegrees,
                    "the gyro starts late, or the protractor's zero is off"};
   group.stated = all_stated(turns, &TapedRun::sd, "an sd", group, found);
   for (const TapedRun& run : turns) {
@@ -134,4 +134,4 @@ void add_gyro(const std::vector<TapedRun>& turns, const std::vector<TapedRun>& r
   found.gyro_bias = Estimate{ratio.value * rate.value, ratio.value * rate.standard_error, rate.dof};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 constexpr const char* kDiameterRatio = "E_d (right wheel / left wheel): ";
@@ -23,7 +23,7 @@ std::vector<TapedRun> with(const std::vector<TapedRun>& runs, double TapedRun::*
 
 /// What the robot turns per metre of odometry, by the headings measured.
 Estimate bend_by_headings(const std::vector<TapedRun>& runs, TapeCalibration& found) {
-  TapedGroup group{"heading", "headings of straight runs", "deg", kDegrees,
+  TapedGroup group{"heading", "headings of straight runs", "deg", geometry::kDegrees,
                    "the start's heading is off by that"};
   group.stated = all_stated(runs, &TapedRun::sd_heading, "an sd_heading", group, found);
   for (const TapedRun& run : runs) {
@@ -83,7 +83,7 @@ void say_why_no_ratio(const std::vector<TapedRun>& runs, double wheelbase, TapeC
       "heading), say how exactly it was aimed (column sd_start), or drive squares both ways "
       "(umbmark)",
       kDiameterRatio, std::abs(aside), aside < 0.0 ? "right" : "left", 100.0 * std::abs(share),
-      kDegrees * std::abs(angle)));
+      geometry::kDegrees * std::abs(angle)));
 }
 
 /// What the runs turn per metre; none where nothing measured shows it.
@@ -97,7 +97,7 @@ std::optional<Estimate> bend_of(const std::vector<TapedRun>& straight, TapeCalib
 
 /// The tape is the chord of a bent run.
 Estimate scale_of_runs(const std::vector<TapedRun>& straight, double bend, TapeCalibration& found) {
-  TapedGroup group{"straight run", "straight runs", "mm", kMillimetres,
+  TapedGroup group{"straight run", "straight runs", "mm", geometry::kMillimetres,
                    "a tape laid from another point of the robot at the start than at the stop, or "
                    "a length that is lost at each start"};
   group.stated = all_stated(straight, &TapedRun::sd, "an sd", group, found);
@@ -140,4 +140,4 @@ void add_lengths(const std::vector<TapedRun>& straight, double wheelbase, TapeCa
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

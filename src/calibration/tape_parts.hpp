@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 /// Runs of one kind, and what they are called.
 struct TapedGroup {
@@ -49,4 +49,4 @@ void add_lengths(const std::vector<TapedRun>& straight, double wheelbase, TapeCa
 void add_gyro(const std::vector<TapedRun>& turns, const std::vector<TapedRun>& rests,
               TapeCalibration& found);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 TapedGroup group_of_turns(const std::vector<TapedRun>& turns, TapeCalibration& found) {
-  TapedGroup group{"turn", "turns", "deg", kDegrees,
+  TapedGroup group{"turn", "turns", "deg", geometry::kDegrees,
                    "each turn starts or stops with a twist, or the protractor's zero is off"};
   group.stated = all_stated(turns, &TapedRun::sd, "an sd", group, found);
   for (const TapedRun& run : turns) {
@@ -96,7 +96,8 @@ void judge_rates(const std::vector<TapedRun>& turns, const TapedGroup& group, Es
       "slow and fast turns contradict each other: the robot turns {:.4f} times what its odometry "
       "says at {:.2g} deg/s, {:.4f} times at {:.2g} deg/s (the effect turn scrub); the wheelbase "
       "stands between, and its error is wider",
-      beside->ratio - half, kDegrees * slowest, beside->ratio + half, kDegrees * fastest));
+      beside->ratio - half, geometry::kDegrees * slowest, beside->ratio + half,
+      geometry::kDegrees * fastest));
   ratio = widened(ratio, half);
 }
 
@@ -111,4 +112,4 @@ void add_turns(const std::vector<TapedRun>& turns, TapeCalibration& found) {
   found.turn_factor = ratio;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

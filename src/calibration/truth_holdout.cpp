@@ -10,7 +10,7 @@
 #include <cmath>
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 /// The rows, truth and sightings of one span of time.
@@ -81,16 +81,16 @@ std::vector<TruthLeg> truth_legs(const std::vector<DrivenRecording>& recordings,
   std::vector<TruthLeg> legs;
   for (std::size_t session = 0; session < recordings.size(); ++session) {
     const DrivenRecording& recording = recordings[session];
-    const std::vector<double> path = driven_path(recording.drive);
+    const std::vector<double> path = drive::driven_path(recording.drive);
     std::optional<std::size_t> from;
     double start = 0.0;
     for (std::size_t row = 0; row < recording.truth.size(); ++row) {
       const double t = recording.truth[row].t;
       if (t < recording.drive.start() || t > recording.drive.t.back()) continue;
-      const double at = path_at(recording.drive, path, t);
+      const double at = drive::path_at(recording.drive, path, t);
       if (from && at - start < leg) continue;
       if (from) {
-        const bool held_out = is_held_out(legs.size(), share);
+        const bool held_out = drive::is_held_out(legs.size(), share);
         legs.push_back({static_cast<int>(session), *from, row, held_out});
       }
       from = row;
@@ -126,7 +126,7 @@ TrainingSegments without_held_out(const std::vector<DrivenRecording>& recordings
 
 ArrivalErrors arrival_errors(const std::vector<DrivenRecording>& recordings,
                              const std::vector<TruthLeg>& legs, const Model& model) {
-  const std::vector<DrivenRecording> corrected = without_effects(recordings, model);
+  const std::vector<DrivenRecording> corrected = odometry::without_effects(recordings, model);
   ArrivalErrors result;
   for (const TruthLeg& leg : legs) {
     if (!leg.held_out) continue;
@@ -140,4 +140,4 @@ ArrivalErrors arrival_errors(const std::vector<DrivenRecording>& recordings,
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -12,7 +12,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 struct TruthLeg {
   int session = 0;
@@ -37,4 +37,4 @@ struct TrainingSegments {
 [[nodiscard]] ArrivalErrors arrival_errors(const std::vector<DrivenRecording>& recordings,
                                            const std::vector<TruthLeg>& legs, const Model& model);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

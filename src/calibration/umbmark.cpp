@@ -13,6 +13,8 @@
 #include <Eigen/Cholesky>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 using Eigen::Vector2d;
@@ -132,9 +134,10 @@ ExactFit fit_exactly(const SquareClusters& clusters, const SquareSetup& setup) {
       for (int j = -kStarts; j <= kStarts; ++j) {
         const double beta = kLargestError * i / kStarts;
         const double alpha = kLargestError * j / kStarts;
-        ExactFit fit = descend({1.0 + beta * setup.wheelbase / setup.side,
-                                scale * kQuarterTurn / (kQuarterTurn - alpha), scale},
-                               clusters, setup);
+        ExactFit fit =
+            descend({1.0 + beta * setup.wheelbase / setup.side,
+                     scale * geometry::kQuarterTurn / (geometry::kQuarterTurn - alpha), scale},
+                    clusters, setup);
         if (fit.left.norm() < elsewhere.left.norm()) elsewhere = std::move(fit);
       }
     }
@@ -187,17 +190,17 @@ SquareSolution umbmark(const SquareClusters& clusters, const SquareSetup& setup)
   const Sensitivity alpha = mean(angles.alpha_x, angles.alpha_y);
   const Sensitivity beta = mean(angles.beta_x, angles.beta_y);
   const double s = setup.wheelbase * std::sin(0.5 * beta.value);
-  if (alpha.value >= kQuarterTurn || std::abs(s) >= side) {
+  if (alpha.value >= geometry::kQuarterTurn || std::abs(s) >= side) {
     throw SolveError(
         "the end errors are as large as the square itself: no wheelbase and wheels "
         "explain them by the small-angle formulas");
   }
-  const double lacking = kQuarterTurn - alpha.value;
+  const double lacking = geometry::kQuarterTurn - alpha.value;
   const double slope_d =
       side * setup.wheelbase * std::cos(0.5 * beta.value) / ((side - s) * (side - s));
   const Sensitivity e_d = beta.mapped((side + s) / (side - s), slope_d);
-  const Sensitivity e_b =
-      alpha.mapped(scale * kQuarterTurn / lacking, scale * kQuarterTurn / (lacking * lacking));
+  const Sensitivity e_b = alpha.mapped(scale * geometry::kQuarterTurn / lacking,
+                                       scale * geometry::kQuarterTurn / (lacking * lacking));
   return solution(alpha, beta, e_d, e_b, clusters, setup);
 }
 
@@ -211,8 +214,8 @@ SquareSolution solve_square(const SquareClusters& clusters, const SquareSetup& s
   const Sensitivity e_b{fit.at.wheelbase_ratio, gain.block<1, 2>(1, 0).transpose(),
                         gain.block<1, 2>(1, 2).transpose()};
   const double scale = setup.scale.value;
-  const Sensitivity alpha = e_b.mapped(kQuarterTurn * (1.0 - scale / e_b.value),
-                                       scale * kQuarterTurn / (e_b.value * e_b.value));
+  const Sensitivity alpha = e_b.mapped(geometry::kQuarterTurn * (1.0 - scale / e_b.value),
+                                       scale * geometry::kQuarterTurn / (e_b.value * e_b.value));
   const double per_ratio = setup.side / (setup.wheelbase * e_b.value);
   const double beta = (fit.at.right_factor() - fit.at.left_factor()) * per_ratio;
   const double by_d = 4.0 * scale / std::pow(e_d.value + 1.0, 2) * per_ratio;

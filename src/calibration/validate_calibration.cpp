@@ -13,6 +13,8 @@
 #include <set>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 constexpr int kFewestLegs = 5;  // to judge a calibration by
@@ -118,7 +120,7 @@ CalibrationGain CalibrationValidation::gain() const {
 
 CalibrationValidation validate_calibration(const std::vector<DrivenRecording>& recordings,
                                            const Model& model, const CalibrationOptions& options) {
-  require_well_formed(recordings, model.robot);
+  drive::require_well_formed(recordings, model.robot);
   if (!options.truth || !(options.holdout > 0.0)) return {};
   WheelCalibrationOptions how = calibration_options(options);
   how.noise = false;

@@ -63,7 +63,7 @@ double heading_by(const Vector2& u, const Vector2& m, double difference) {
     throw std::invalid_argument(
         fmt::format("the distances say that the robot stands askew to the walls by {:.0f} degrees, "
                     "expected 45 or less",
-                    std::abs(heading) * kDegrees));
+                    std::abs(heading) * geometry::kDegrees));
   }
   return heading;
 }

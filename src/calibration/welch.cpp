@@ -24,9 +24,13 @@ Estimate of_parts(double value, double va, double dof_a, double vb, double dof_b
 Interval confidence_interval(const Estimate& estimate, double confidence) {
   if (estimate.dof <= 0.0) return {estimate.value, estimate.value};
   const double reach =
-      student_quantile(0.5 + 0.5 * confidence, estimate.dof) * estimate.standard_error;
+      statistics::student_quantile(0.5 + 0.5 * confidence, estimate.dof) * estimate.standard_error;
   return {estimate.value - reach, estimate.value + reach};
 }
+
+}  // namespace trussmap
+
+namespace trussmap::calibration {
 
 SampleMean sample_mean(const std::vector<Eigen::Vector2d>& sample) {
   if (sample.size() < 2) throw std::invalid_argument("a scatter takes two runs or more");
@@ -70,7 +74,8 @@ Estimate sum_of(const Estimate& a, const Estimate& b) {
 
 double two_sided_p(const Estimate& estimate) {
   if (estimate.dof <= 0.0) return std::numeric_limits<double>::quiet_NaN();
-  return 2.0 * student_p_value(std::abs(estimate.value) / estimate.standard_error, estimate.dof);
+  return 2.0 * statistics::student_p_value(std::abs(estimate.value) / estimate.standard_error,
+                                           estimate.dof);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -13,7 +13,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 /// At least two points, else std::invalid_argument.
 [[nodiscard]] SampleMean sample_mean(const std::vector<Eigen::Vector2d>& sample);
@@ -35,4 +35,4 @@ namespace trussmap {
 /// Two-sided, that an estimate as far from 0 is chance; NaN without scatter.
 [[nodiscard]] double two_sided_p(const Estimate& estimate);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

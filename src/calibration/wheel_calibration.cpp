@@ -28,7 +28,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::calibration {
 namespace {
 
 /// What is told of references: which of them are asked where they sit, what is known of them.
@@ -38,15 +38,18 @@ struct References {
 };
 
 /// Parameters: those of the constants that are wanted, and the alignment of the references.
-EffectParameters parameters_of(const Wanted& wanted, const std::vector<DrivenRecording>& recordings,
-                               const Robot& robot, const WheelCalibrationOptions& options,
-                               const References& references) {
+estimation::EffectParameters parameters_of(const Wanted& wanted,
+                                           const std::vector<DrivenRecording>& recordings,
+                                           const Robot& robot,
+                                           const WheelCalibrationOptions& options,
+                                           const References& references) {
   const std::vector<SoughtConstant> constants = sought_constants(robot);
-  EffectParameters parameters;
+  estimation::EffectParameters parameters;
   for (std::size_t k = 0; k < constants.size(); ++k) {
-    if (wanted[k]) parameters.push_back(plain_effect(constants[k].channel, recordings, robot));
+    if (wanted[k])
+      parameters.push_back(estimation::plain_effect(constants[k].channel, recordings, robot));
   }
-  for (EffectPattern& one :
+  for (estimation::EffectPattern& one :
        reference_alignment(recordings, references.used, options.sessions, references.found)) {
     parameters.push_back(std::move(one));
   }
@@ -56,9 +59,9 @@ EffectParameters parameters_of(const Wanted& wanted, const std::vector<DrivenRec
 /// The recordings with the model's effects taken out, and a problem of them.
 struct Fitted {
   std::vector<DrivenRecording> corrected;
-  RecordingProblem problem;
-  EffectParameters parameters;
-  RecordingAdjustment adjustment;
+  estimation::RecordingProblem problem;
+  estimation::EffectParameters parameters;
+  estimation::RecordingAdjustment adjustment;
 };
 
 /// What turning and travel are scaled by, steering's columns and the noise of its readings are.
@@ -75,10 +78,10 @@ void scale_steering(const std::vector<double>& g, const Wanted& wanted, const Ro
   std::size_t at = 0;
   for (std::size_t k = 0; k < constants.size(); ++k) {
     if (!wanted[k]) continue;
-    EffectPattern& column = fitted.parameters[at++];
-    if (!is_steering(constants[k].channel)) continue;
-    for (std::vector<DrivePattern>& rows : column.drives) {
-      for (DrivePattern& row : rows) {
+    estimation::EffectPattern& column = fitted.parameters[at++];
+    if (!effects::is_steering(constants[k].channel)) continue;
+    for (std::vector<effects::DrivePattern>& rows : column.drives) {
+      for (effects::DrivePattern& row : rows) {
         row.advance *= ahead;
         row.turn *= turned;
         row.excess *= turned;
@@ -100,7 +103,8 @@ std::vector<double> shortened(const std::vector<double>& g, std::vector<double> 
                               const std::vector<DrivenRecording>& recordings, const Model& model) {
   constexpr int kHalvings = 20;
   for (int halving = 0; halving < kHalvings; ++halving) {
-    if (leave_a_way(with_constants(model, next).effects, recordings, model.robot, {})) return next;
+    if (fitting::leave_a_way(with_constants(model, next).effects, recordings, model.robot, {}))
+      return next;
     for (std::size_t k = 0; k < g.size(); ++k) next[k] = 0.5 * (g[k] + next[k]);
   }
   return g;
@@ -109,26 +113,28 @@ std::vector<double> shortened(const std::vector<double>& g, std::vector<double> 
 Fitted fit(const std::vector<DrivenRecording>& recordings, const Model& model, const Wanted& wanted,
            const WheelCalibrationOptions& options, const References& references) {
   Fitted result;
-  result.corrected = without_effects(recordings, model);
+  result.corrected = odometry::without_effects(recordings, model);
   result.parameters = parameters_of(wanted, result.corrected, model.robot, options, references);
-  if (has_steering(model.robot)) scale_steering(in_force(model), wanted, model.robot, result);
-  result.problem = make_problem(result.corrected, model, options.problem);
-  RecordingAdjustmentOptions how;
+  if (drive::has_steering(model.robot))
+    scale_steering(in_force(model), wanted, model.robot, result);
+  result.problem = estimation::make_problem(result.corrected, model, options.problem);
+  estimation::RecordingAdjustmentOptions how;
   how.gate = options.gate;
   how.most_left_out = kMostLeftOut;
-  result.adjustment = adjust(result.problem, result.parameters, how);
+  result.adjustment = estimation::adjust(result.problem, result.parameters, how);
   return result;
 }
 
 /// Whether it may well be nothing, under other noise that is stated far too large.
-bool is_hidden(const WheelNoiseFit& found, const RecordingAdjustment& adjustment) {
+bool is_hidden(const WheelNoiseFit& found, const estimation::RecordingAdjustment& adjustment) {
   constexpr double kFarTooSmall = 0.5;  // chi^2/dof
   return adjustment.chi2 < kFarTooSmall * adjustment.dof &&
          (found.k.array() < found.sd.array()).all();
 }
 
 /// k_L and k_R by the fit of the geometry, in the result and in its model.
-void find_noise(const Fitted& about, const ProblemOptions& options, WheelCalibration& result) {
+void find_noise(const Fitted& about, const estimation::ProblemOptions& options,
+                WheelCalibration& result) {
   const std::optional<WheelNoiseFit> found = most_likely_noise(
       about.corrected, result.model, options, about.parameters, about.adjustment.state);
   if (!found || is_hidden(*found, about.adjustment)) {
@@ -205,7 +211,7 @@ Wanted determined(const std::vector<DrivenRecording>& recordings, const Model& m
 
 /// The determined constants as effects, with their covariance.
 void keep_covariance(WheelCalibration& result, const std::vector<double>& g, const Wanted& wanted,
-                     const RecordingAdjustment& adjustment) {
+                     const estimation::RecordingAdjustment& adjustment) {
   const std::vector<SoughtConstant> constants = sought_constants(result.model.robot);
   std::vector<double> found;
   std::vector<double> slopes;
@@ -225,7 +231,7 @@ void keep_covariance(WheelCalibration& result, const std::vector<double>& g, con
 
 /// chi^2, and the constants with their standard errors.
 void read_constants(WheelCalibration& result, const std::vector<double>& g, const Wanted& wanted,
-                    const RecordingAdjustment& adjustment) {
+                    const estimation::RecordingAdjustment& adjustment) {
   result.chi2 = adjustment.chi2;
   result.dof = adjustment.dof;
   const Robot& robot = result.model.robot;
@@ -254,7 +260,7 @@ void read_constants(WheelCalibration& result, const std::vector<double>& g, cons
 }
 
 /// Whether a round moved no estimate by more than `kStill` of its standard error.
-bool stands_still(const RecordingAdjustment& adjustment, Eigen::Index geometry) {
+bool stands_still(const estimation::RecordingAdjustment& adjustment, Eigen::Index geometry) {
   constexpr double kStill = 0.1;
   const Eigen::ArrayXd steps = adjustment.coefficients.head(geometry).array().abs();
   const Eigen::ArrayXd variances = adjustment.coefficient_covariance.diagonal().head(geometry);
@@ -264,7 +270,7 @@ bool stands_still(const RecordingAdjustment& adjustment, Eigen::Index geometry) 
 /// Wheels that run backwards, or change sides: the truth is not what it is said to be.
 void require_positive(const std::vector<double>& g, const Wanted& wanted,
                       const std::vector<DrivenRecording>& recordings, const Model& model,
-                      const ProblemOptions& options) {
+                      const estimation::ProblemOptions& options) {
   const std::vector<SoughtConstant> constants = sought_constants(model.robot);
   const bool truth = options.truth && std::any_of(recordings.begin(), recordings.end(),
                                                   [](const DrivenRecording& recording) {
@@ -319,9 +325,9 @@ ReferencesUsed told_in(const std::vector<DrivenRecording>& recordings, const Mod
 std::vector<LeftOutRow> left_out_by(const Fitted& last) {
   std::vector<LeftOutRow> rows;
   for (const int k : last.adjustment.left_out) {
-    const Measurement& one = last.problem.measurements[idx(k)];
-    rows.push_back(
-        {one.kind->facts().stream, one.session, one.source, describe(last.problem, one)});
+    const estimation::Measurement& one = last.problem.measurements[idx(k)];
+    rows.push_back({one.kind->facts().stream, one.session, one.source,
+                    estimation::describe(last.problem, one)});
   }
   return rows;
 }
@@ -335,9 +341,10 @@ CalibrationByParts calibrated_by_parts(std::vector<double> g,
   WheelCalibration result;
   result.model = with_constants(model, g);
   Mountings& mounted = result.model.robot.mounted;
-  mounted = started_places(
-      has_steering(model.robot) ? without_effects(recordings, result.model) : recordings,
-      model.robot);
+  mounted = started_places(drive::has_steering(model.robot)
+                               ? odometry::without_effects(recordings, result.model)
+                               : recordings,
+                           model.robot);
   References references{told_in(recordings, result.model, options), {}};
   if (!references.used.scanner) mounted.scanner = model.robot.mounted.scanner;
   if (!references.used.sensor) mounted.sensor = model.robot.mounted.sensor;
@@ -376,4 +383,4 @@ WheelCalibration calibrated_from(std::vector<double> g,
   return calibrated_by_parts(std::move(g), recordings, model, options).found;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::calibration {
 
 /// chi^2/dof.
 [[nodiscard]] inline double scatter_of(const WheelCalibration& found) {
@@ -22,7 +22,7 @@ namespace trussmap {
 }
 
 struct WheelCalibrationOptions {
-  ProblemOptions problem;
+  estimation::ProblemOptions problem;
   bool noise = true;  ///< estimate k_L and k_R too
   /// Of each recording, where several are segments of one drive; empty: each is its own.
   std::vector<int> sessions;
@@ -41,7 +41,7 @@ struct WheelCalibrationOptions {
 
 /// A row of a recording's stream.
 struct LeftOutRow {
-  RecordingStream stream = RecordingStream::sightings;
+  estimation::RecordingStream stream = estimation::RecordingStream::sightings;
   int session = 0;
   std::size_t row = 0;
   std::string text;  ///< what it says
@@ -73,4 +73,4 @@ struct CalibrationByParts {
                                                  const Model& model,
                                                  const WheelCalibrationOptions& options);
 
-}  // namespace trussmap
+}  // namespace trussmap::calibration

@@ -18,6 +18,8 @@
 #include <Eigen/LU>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 using Eigen::Vector3d;
@@ -207,7 +209,7 @@ double mean_p_value(const Vector3d& off, const Matrix3& scatter, int runs) {
   const double n = runs;
   const double t2 = n * off.dot(factor.solve(off));
   const double f = t2 * (n - 3.0) / (3.0 * (n - 1.0));
-  return fisher_p_value(f, 3.0, n - 3.0);
+  return statistics::fisher_p_value(f, 3.0, n - 3.0);
 }
 
 WheelConstant constant(double squared, double squared_sd) {
@@ -242,6 +244,10 @@ NoiseShape noise_shape(const TestPath& path, double wheelbase) {
   return {left.covariance, right.covariance};
 }
 
+}  // namespace trussmap
+
+namespace trussmap::calibration {
+
 Matrix3 sensor_noise(const NoiseExperiment& experiment) {
   Matrix3 noise = experiment.sensor_covariance;
   noise.diagonal() += experiment.sensor_sd.cwiseAbs2();
@@ -255,6 +261,10 @@ EndMoments end_moments(const NoiseExperiment& experiment, const NoiseShape& shap
   }
   return {Vector3d::Zero(), squared[0] * shape.left + squared[1] * shape.right};
 }
+
+}  // namespace trussmap::calibration
+
+namespace trussmap {
 
 NoiseEstimate estimate_wheel_noise(const EndErrors& errors, const NoiseExperiment& experiment) {
   if (errors.size() < 2) throw std::invalid_argument("a scatter takes two runs or more");

@@ -15,6 +15,8 @@
 #include <vector>
 
 namespace trussmap {
+using namespace calibration;
+
 namespace {
 
 /// A constant that calibrations find, with a size.
@@ -32,7 +34,7 @@ bool take_sides_in_robot(const std::vector<SoughtConstant>& sought, Model& model
   bool measured = robot.wheel_left == 0.0;
   bool steered = robot.steer_left == 0.0;
   std::erase_if(model.effects, [&](const Effect& one) {
-    if (!is_wheels_place(one.channel) || !is_found(one, sought)) return false;
+    if (!effects::is_wheels_place(one.channel) || !is_found(one, sought)) return false;
     const bool travel = one.channel == Channel::wheel_left;
     (travel ? robot.wheel_left : robot.steer_left) += one.coefficients.front();
     (travel ? measured : steered) = true;

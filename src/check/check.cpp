@@ -16,6 +16,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace check;
+
 namespace {
 
 constexpr double kNarrowest = 0.01;    // m: wheelbases that robots have
@@ -81,8 +83,8 @@ void check_freedom(const std::vector<DrivenRecording>& recordings, CheckFindings
           : !one.loops.empty()   ? "loops.csv"
                                  : "drive.csv",
           "", "nothing to test",
-          joined("what was measured exceeds what is unknown by ", dof,
-                 " values: a model can hardly fail there"),
+          text::joined("what was measured exceeds what is unknown by ", dof,
+                       " values: a model can hardly fail there"),
           "drive routes again, or survey landmarks");
 }
 
@@ -121,8 +123,9 @@ void check_wheelbase(Checked& checked, const Model& model, const std::string& mo
     findings.push_back({model_file, key, geometry.kind, evidence, remedy});
   };
   if (stated < kNarrowest || stated > geometry.widest) {
-    add(joined("the ", wheelbase ? key : "distance of the wheels", " is ", figure(stated, "m")),
-        joined("state ", wheelbase ? "it" : key, " in metres"));
+    add(text::joined("the ", wheelbase ? key : "distance of the wheels", " is ",
+                     figure(stated, "m")),
+        text::joined("state ", wheelbase ? "it" : key, " in metres"));
     return;
   }
   if (turns.sign == 0 || checked.wrong.contains("left") || checked.wrong.contains("heading")) {
@@ -131,17 +134,17 @@ void check_wheelbase(Checked& checked, const Model& model, const std::string& mo
   const double times = 1.0 / std::abs(turns.slope);
   if (std::abs(std::log(times)) < std::log(kWheelbaseOff)) return;
   if (wheelbase) {
-    add(joined("the wheelbase is ", figure(stated, "m"),
-               ", but the wheels turn with the compass as if "
-               "it were ",
-               figure(times * stated, "m")),
+    add(text::joined("the wheelbase is ", figure(stated, "m"),
+                     ", but the wheels turn with the compass as if "
+                     "it were ",
+                     figure(times * stated, "m")),
         "measure it again; if it is right, look at the units of left, right and heading");
     return;
   }
-  add(joined("the wheels turn with the compass as if distances were ", figure(times),
-             " times as long as the model's"),
-      joined("measure ", key, " again; if it is right, look at the units of the columns and of ",
-             "heading"));
+  add(text::joined("the wheels turn with the compass as if distances were ", figure(times),
+                   " times as long as the model's"),
+      text::joined("measure ", key,
+                   " again; if it is right, look at the units of the columns and of ", "heading"));
 }
 
 /// The same travels, readings and sightings, to the last digit: a programme driven twice has its
@@ -170,8 +173,8 @@ void check_twice(const std::vector<DrivenRecording>& recordings, CheckFindings& 
       if (!same_session(recordings[k], recordings[other])) continue;
       Checked both{recordings[k], findings};
       both.add("drive.csv", "", "same session twice",
-               joined("all ", recordings[k].drive.rows(), " rows travel as those of ",
-                      recordings[other].name),
+               text::joined("all ", recordings[k].drive.rows(), " rows travel as those of ",
+                            recordings[other].name),
                "give each session once: counted twice it makes errors look smaller and alike");
       break;
     }
@@ -198,8 +201,9 @@ void check_lone_wheel(Checked& checked, bool by_survey, bool by_truth) {
     if (!survey && !truth) continue;
     add_lone_wheel(
         checked, mistake,
-        joined("with the ", lone_wheel(mistake), " wheel's sign changed the wheels turn with the ",
-               survey ? "survey's corners" : "truth", ", as recorded they do not"));
+        text::joined("with the ", lone_wheel(mistake),
+                     " wheel's sign changed the wheels turn with the ",
+                     survey ? "survey's corners" : "truth", ", as recorded they do not"));
     return;
   }
 }
@@ -254,11 +258,11 @@ void check_contradicted_wheels(Checked& checked, const TurnAgreement& turns,
       turns.unsigned_wheels || surveyed.unsigned_wheels || truth.unsigned_wheels;
   if (checked.wheels_wrong() || !sides || !contradicted || !never_negative(drive)) return;
   checked.add("drive.csv", wheel_columns(drive), "wheels unsigned",
-              joined("no travel is negative, and the wheels go straight on where ",
-                     turns.unsigned_wheels      ? "the compass turns"
-                     : surveyed.unsigned_wheels ? "the survey has corners"
-                                                : "the truth turns",
-                     " on the spot"),
+              text::joined("no travel is negative, and the wheels go straight on where ",
+                           turns.unsigned_wheels      ? "the compass turns"
+                           : surveyed.unsigned_wheels ? "the survey has corners"
+                                                      : "the truth turns",
+                           " on the spot"),
               "record travels with their sign: a turn on the spot has one wheel going backwards");
 }
 
@@ -268,7 +272,7 @@ void take_wheelbase(double wheelbase, Checked& checked, MotionRows& drive) {
   checked.wheelbase = wheelbase;
   checked.wheelbase_known = true;
   for (std::size_t row = 0; row < drive.pair.left.size(); ++row) {
-    drive.turn[row] = body_motion(drive.pair.at(row), wheelbase).turn;
+    drive.turn[row] = drive::body_motion(drive.pair.at(row), wheelbase).turn;
   }
 }
 
@@ -343,7 +347,7 @@ void check_fix_unit(Checked& checked) {
   constexpr double kStuck = 1e-7;
   constexpr int kFewest = 3;
   const DrivenRecording& recording = checked.recording;
-  const std::vector<double> path = driven_path(recording.drive);
+  const std::vector<double> path = drive::driven_path(recording.drive);
   double driven = 0.0;
   double moved = 0.0;
   int ways = 0;
@@ -352,7 +356,7 @@ void check_fix_unit(Checked& checked) {
   for (const Fix& fix : recording.fixes) {
     if (fix.t < recording.drive.start() || fix.t > recording.drive.t.back()) continue;
     if (std::abs(fix.x) > 180.0 || std::abs(fix.y) > 180.0) return;
-    const double at = path_at(recording.drive, path, fix.t);
+    const double at = drive::path_at(recording.drive, path, fix.t);
     if (last != nullptr && at - begun < kApart) continue;
     if (last != nullptr) {
       driven += at - begun;
@@ -364,8 +368,8 @@ void check_fix_unit(Checked& checked) {
   }
   if (ways < kFewest || moved > kFarTooShort * driven || moved < kStuck * driven) return;
   checked.add("fixes.csv", "x,y", "fix unit",
-              joined("the fixes move by ", figure(moved), " in all while the wheels drive ",
-                     figure(driven, "m"), ": degrees of latitude and longitude?"),
+              text::joined("the fixes move by ", figure(moved), " in all while the wheels drive ",
+                           figure(driven, "m"), ": degrees of latitude and longitude?"),
               "project them into metres, x to the east and y to the north");
 }
 
@@ -374,7 +378,7 @@ DrivenRecording by_its_columns(Recording recording, const Robot& robot) {
   if (steers_in_degrees(recording, robot)) {
     for (Covariate& one : recording.drive.covariates) {
       if (one.name != robot.columns[1]) continue;
-      for (double& angle : one.values) angle *= kDegree;
+      for (double& angle : one.values) angle *= geometry::kDegree;
     }
   }
   return with_wheels(std::move(recording), robot);
@@ -384,8 +388,8 @@ void add_degrees(Checked& checked) {
   const std::string& name = checked.robot->columns[1];
   const bool tricycle = checked.robot->drive == DriveKind::tricycle;
   checked.add("drive.csv", name, "angle unit",
-              joined(name, " is beyond ", tricycle ? "a whole turn" : "a right angle",
-                     " in many rows, if it is in radians: it looks like degrees"),
+              text::joined(name, " is beyond ", tricycle ? "a whole turn" : "a right angle",
+                           " in many rows, if it is in radians: it looks like degrees"),
               "convert it to radians, left positive");
 }
 
@@ -400,12 +404,12 @@ std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordi
   std::vector<DrivenRecording> all;
   all.reserve(recordings.size());
   for (const Recording& one : recordings) all.push_back(by_its_columns(one, robot));
-  for (const DrivenRecording& one : all) require_well_formed(one, robot);
+  for (const DrivenRecording& one : all) drive::require_well_formed(one, robot);
   if (model != nullptr && !model->robot.wheelbase_stated) {
-    findings.push_back(
-        {model_file, "wheelbase", "no wheelbase",
-         joined("[robot] has no wheelbase: ", figure(model->robot.wheelbase, "m"), " is taken"),
-         "state the distance of the wheels"});
+    findings.push_back({model_file, "wheelbase", "no wheelbase",
+                        text::joined("[robot] has no wheelbase: ",
+                                     figure(model->robot.wheelbase, "m"), " is taken"),
+                        "state the distance of the wheels"});
   }
   bool said = false;
   for (std::size_t k = 0; k < all.size(); ++k) {

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kCreeps = 0.004;       // m/s
@@ -33,8 +33,8 @@ constexpr double kDay = 86400.0;        // s
 constexpr double kSince1970 = 5e8;      // s: no clock that began with the drive shows so much
 
 /// The unit in which a row that long, at that speed, is a robot's.
-const TimeUnit* unit_of_rows(double duration, double speed) {
-  for (const TimeUnit& one : kTimeUnits) {
+const recording::TimeUnit* unit_of_rows(double duration, double speed) {
+  for (const recording::TimeUnit& one : recording::kTimeUnits) {
     const double row = duration / one.per_second;
     const double drives = speed * one.per_second;
     if (row > kShortestRow && row < kLongestRow && drives > kOrdinary && drives < kFast) {
@@ -49,11 +49,11 @@ void check_time_unit(Checked& checked, const UsualRow& usual) {
       usual.speed * usual.duration > kLongestTravel) {
     return;
   }
-  const TimeUnit* const unit = unit_of_rows(usual.duration, usual.speed);
+  const recording::TimeUnit* const unit = unit_of_rows(usual.duration, usual.speed);
   if (unit == nullptr) return;
   checked.add("drive.csv", "t", "time unit",
-              joined("a row lasts ", figure(usual.duration, "s"), " and the robot drives at ",
-                     figure(usual.speed, "m/s"), " (medians): times look like ", unit->name),
+              text::joined("a row lasts ", figure(usual.duration, "s"), " and the robot drives at ",
+                           figure(usual.speed, "m/s"), " (medians): times look like ", unit->name),
               "convert all times to seconds, of sightings and truth too");
 }
 
@@ -66,16 +66,17 @@ void check_clock_set(Checked& checked, const UsualRow& usual) {
   const double after = drive.t[row];
   const bool epoch = std::abs(before) < kSince1970 && after > kSince1970;
   const double jump = after - before - usual.duration;
-  checked.note("drive.csv", "t", "clock set",
-               joined("the time jumps from ", shortest_text(before), " s to ", shortest_text(after),
-                      " s in row ", row + 1,
-                      epoch ? ", from seconds of its own to those since 1970"
-                            : joined(", by ", figure(jump / kDay), " days"),
-                      jumps.size() > 1 ? joined("; ", jumps.size(), " jumps like it") : "",
-                      ": the clock was set, or the rest is of another day"),
-               joined("take ", shortest_text(std::round(jump)),
-                      " s off all later times, of all "
-                      "files, or split the recording there"));
+  checked.note(
+      "drive.csv", "t", "clock set",
+      text::joined("the time jumps from ", text::shortest_text(before), " s to ",
+                   text::shortest_text(after), " s in row ", row + 1,
+                   epoch ? ", from seconds of its own to those since 1970"
+                         : text::joined(", by ", figure(jump / kDay), " days"),
+                   jumps.size() > 1 ? text::joined("; ", jumps.size(), " jumps like it") : "",
+                   ": the clock was set, or the rest is of another day"),
+      text::joined("take ", text::shortest_text(std::round(jump)),
+                   " s off all later times, of all "
+                   "files, or split the recording there"));
 }
 
 /// Of a file's rows.
@@ -112,10 +113,10 @@ double unit_that_fills(const std::vector<double>& t, double from, double to) {
 }
 
 std::string unit_words(double per) {
-  for (const TimeUnit& one : kTimeUnits) {
-    if (one.per_second == per) return joined("in ", one.name);
+  for (const recording::TimeUnit& one : recording::kTimeUnits) {
+    if (one.per_second == per) return text::joined("in ", one.name);
     if (one.per_second == 1.0 / per)
-      return joined("in a unit ", figure(1.0 / per), " times as long as the drive's");
+      return text::joined("in a unit ", figure(1.0 / per), " times as long as the drive's");
   }
   return {};
 }
@@ -137,15 +138,17 @@ void check_file_times(Checked& checked, const FileTimes& times) {
   }
   const double per = unit_that_fills(times.t, from, to);
   if (inside > 0.0 && per == 0.0) return;
-  const std::string seen = joined("its times go from ", shortest_text(times.t.front()), " to ",
-                                  shortest_text(times.t.back()), ", the drive's from ",
-                                  shortest_text(from), " to ", shortest_text(to));
+  const std::string seen =
+      text::joined("its times go from ", text::shortest_text(times.t.front()), " to ",
+                   text::shortest_text(times.t.back()), ", the drive's from ",
+                   text::shortest_text(from), " to ", text::shortest_text(to));
   if (per != 0.0) {
-    checked.add(times.file, "t", "time unit", joined(seen, ": they look as if ", unit_words(per)),
+    checked.add(times.file, "t", "time unit",
+                text::joined(seen, ": they look as if ", unit_words(per)),
                 "give all files their times in seconds of one clock");
     return;
   }
-  checked.add(times.file, "t", "other clock", joined(seen, ": no row lies within the drive"),
+  checked.add(times.file, "t", "other clock", text::joined(seen, ": no row lies within the drive"),
               "give all files their times in seconds of one clock");
 }
 
@@ -174,4 +177,4 @@ void check_clocks(Checked& checked, const UsualRow& usual) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kTurningTravel = 0.1;  // m of difference
@@ -121,12 +121,12 @@ TurnAgreement check_compass(Checked& checked) {
     if (is_clear(going_on, checked)) {
       best = going_on;  // few readings, whole turns apart
     } else if (is_clear(degrees, checked)) {
-      checked.add(
-          "drive.csv", "heading", "angle unit",
-          joined("as degrees the readings turn with the wheels (correlation ",
-                 fixed_text(std::abs(degrees.correlation), 2), "), as radians they do not (",
-                 fixed_text(std::abs(best.correlation), 2), ")"),
-          "convert the readings to radians");
+      checked.add("drive.csv", "heading", "angle unit",
+                  text::joined("as degrees the readings turn with the wheels (correlation ",
+                               text::fixed_text(std::abs(degrees.correlation), 2),
+                               "), as radians they do not (",
+                               text::fixed_text(std::abs(best.correlation), 2), ")"),
+                  "convert the readings to radians");
       best = degrees;
     }
   }
@@ -134,11 +134,12 @@ TurnAgreement check_compass(Checked& checked) {
     if (!drive.of_two_wheels() || std::abs(best.correlation) > kUnclear) break;
     const TurnAgreement other = turns_of(checked, mistake, 2.0 * std::numbers::pi);
     if (other.turns < kFewestTurns || other.correlation < kClearTurns) continue;
-    add_lone_wheel(checked, mistake,
-                   joined("with the ", lone_wheel(mistake),
-                          " wheel's sign changed the wheels turn with the compass (correlation ",
-                          fixed_text(other.correlation, 2), "), as recorded they do not (",
-                          fixed_text(best.correlation, 2), ")"));
+    add_lone_wheel(
+        checked, mistake,
+        text::joined("with the ", lone_wheel(mistake),
+                     " wheel's sign changed the wheels turn with the compass (correlation ",
+                     text::fixed_text(other.correlation, 2), "), as recorded they do not (",
+                     text::fixed_text(best.correlation, 2), ")"));
     return {};
   }
   if (best.turns < kFewestTurns || std::abs(best.correlation) < kClearTurns) {
@@ -151,4 +152,4 @@ TurnAgreement check_compass(Checked& checked) {
   return best;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

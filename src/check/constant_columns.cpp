@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr std::size_t kFewestReadings = 12;
@@ -67,16 +67,16 @@ class Constant {
 void add_stuck(Checked& checked, const char* file, const char* column, const std::string& value,
                const Constant& one, const std::string& meanwhile) {
   checked.add(file, column, "constant column",
-              joined(value, " in all ", one.count(), " rows that have it, while ", meanwhile),
+              text::joined(value, " in all ", one.count(), " rows that have it, while ", meanwhile),
               "look where it comes from: a sensor that hangs, or a field that is never filled in");
 }
 
 std::string value_words(const char* column, const Constant& one) {
-  return joined(column, " is ", shortest_text(one.value()));
+  return text::joined(column, " is ", text::shortest_text(one.value()));
 }
 
 std::string turning_words(const Constant& one) {
-  return joined("the wheels turn the robot by ", figure(one.turned(), "rad"));
+  return text::joined("the wheels turn the robot by ", figure(one.turned(), "rad"));
 }
 
 void check_turn(Checked& checked, const char* file, const char* column, const Constant& one) {
@@ -130,13 +130,13 @@ void check_places(Checked& checked, const char* file, const Rows& rows, const Tr
   if (!x.stuck() && !y.stuck()) return;
   const bool both = x.stuck() && y.stuck();
   if (x.moved() < kMoved || (!both && !goes_broadly(rows, track))) return;
-  const std::string meanwhile =
-      joined("the wheels lead the robot over ", figure(x.moved(), "m"), both ? "" : " all about");
+  const std::string meanwhile = text::joined("the wheels lead the robot over ",
+                                             figure(x.moved(), "m"), both ? "" : " all about");
   if (both) {
-    add_stuck(
-        checked, file, "x,y",
-        joined("the place is (", shortest_text(x.value()), ", ", shortest_text(y.value()), ")"), x,
-        meanwhile);
+    add_stuck(checked, file, "x,y",
+              text::joined("the place is (", text::shortest_text(x.value()), ", ",
+                           text::shortest_text(y.value()), ")"),
+              x, meanwhile);
   } else {
     const char* const column = x.stuck() ? "x" : "y";
     const Constant& one = x.stuck() ? x : y;
@@ -158,7 +158,7 @@ void check_sighting_columns(Checked& checked, const Track& track) {
   }
   if (range.stuck() && range.moved() > kMoved && seen.size() > 1) {
     add_stuck(checked, "sightings.csv", "range", value_words("range", range), range,
-              joined("the wheels lead the robot over ", figure(range.moved(), "m")));
+              text::joined("the wheels lead the robot over ", figure(range.moved(), "m")));
   }
   if (seen.size() > 1) check_turn(checked, "sightings.csv", "bearing", bearing);
   check_turn(checked, "sightings.csv", "yaw", yaw);
@@ -181,4 +181,4 @@ void check_constant_columns(Checked& checked, const Track& track) {
   check_turn(checked, "truth.csv", "heading", heading);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

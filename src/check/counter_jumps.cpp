@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kLeastJump = 0.3;         // m, and
@@ -40,7 +40,7 @@ double speed_beside(const std::vector<double>& travel, const MotionRows& drive, 
   for (std::size_t k = first; k <= std::min(row + kBeside, travel.size() - 1); ++k) {
     if (k != row) speeds.push_back(travel[k] / drive.duration(k));
   }
-  return median(std::move(speeds));
+  return statistics::median(std::move(speeds));
 }
 
 /// m that a row is beyond what is usual beside it, where it is beyond all that is usual; else 0.
@@ -135,30 +135,30 @@ void check_glitches(Checked& checked, const std::vector<CounterJump>& jumps) {
   const CounterJump& first = jumps.front();
   const std::vector<double>& travel = *all[first.column].travel;
   const auto row_words = [&](std::size_t row) {
-    return joined("row ", row + 1, " (t = ", shortest_text(drive.t[row]), " s)");
+    return text::joined("row ", row + 1, " (t = ", text::shortest_text(drive.t[row]), " s)");
   };
   std::string others;
   constexpr std::size_t kNamed = 4;
   for (std::size_t k = 1; k < std::min(jumps.size(), kNamed); ++k) {
-    others += joined(k == 1 ? "; so are " : ", ", all[jumps[k].column].name, " in rows ",
-                     jumps[k].row + 1, " and ", jumps[k].back + 1);
+    others += text::joined(k == 1 ? "; so are " : ", ", all[jumps[k].column].name, " in rows ",
+                           jumps[k].row + 1, " and ", jumps[k].back + 1);
   }
-  if (jumps.size() > kNamed) others += joined(" and ", jumps.size() - kNamed, " more");
+  if (jumps.size() > kNamed) others += text::joined(" and ", jumps.size() - kNamed, " more");
   std::set<std::string> names;
   for (const CounterJump& one : jumps) names.insert(all[one.column].name);
   std::string columns;
   for (const std::string& one : names) columns += (columns.empty() ? "" : ",") + one;
   checked.findings.push_back(
       {checked.recording.name + "/drive.csv", columns, "counter glitch",
-       joined(all[first.column].name, " travels ", short_text(travel[first.row]), " m", " in ",
-              row_words(first.row), " and ", short_text(travel[first.back]), " m", " in ",
-              row_words(first.back), ", where 99 of 100 rows stay below ", figure(first.usual, "m"),
-              ": a counter that was wrong in ",
-              first.back == first.row + 1 ? std::string("one sample")
-                                          : joined(first.back - first.row, " samples"),
-              others),
+       text::joined(all[first.column].name, " travels ", text::short_text(travel[first.row]), " m",
+                    " in ", row_words(first.row), " and ", text::short_text(travel[first.back]),
+                    " m", " in ", row_words(first.back), ", where 99 of 100 rows stay below ",
+                    figure(first.usual, "m"), ": a counter that was wrong in ",
+                    first.back == first.row + 1 ? std::string("one sample")
+                                                : text::joined(first.back - first.row, " samples"),
+                    others),
        "both rows together are right: check with --mend OUT writes the recording with that travel "
        "shared evenly; or leave the rows out with --exclude"});
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

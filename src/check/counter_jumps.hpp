@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 
 struct CounterJump {
   std::size_t column = 0;  ///< of wheel_readings
@@ -38,4 +38,4 @@ struct WheelReadings {
                                          const std::vector<CounterJump>& glitches,
                                          const std::vector<std::string>& names);
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kFastest = 10.0;     // m/s that a robot drives
@@ -47,7 +47,7 @@ Rows rows_of(const MotionRows& drive, double wheelbase) {
     if (speed > kSlowest) rows.driving.push_back(speed);
     rows.whole = rows.whole && travels_are_whole(drive, row);
   }
-  rows.duration = median(std::move(durations));
+  rows.duration = statistics::median(std::move(durations));
   std::sort(rows.speeds.begin(), rows.speeds.end());
   std::sort(rows.driving.begin(), rows.driving.end());
   return rows;
@@ -59,9 +59,9 @@ void check_units(Checked& checked, const Rows& rows) {
   if (speed > (car ? kFastestCar : kFastest)) {
     const char* unit = rows.whole ? "ticks" : speed > 100.0 ? "mm" : "cm";
     checked.add("drive.csv", wheel_columns(checked.recording.drive), "travel unit",
-                joined("the robot drives at ", figure(speed, "m/s"), " (median)",
-                       rows.whole ? ", and all travels are whole numbers" : "",
-                       ": travels look like ", unit),
+                text::joined("the robot drives at ", figure(speed, "m/s"), " (median)",
+                             rows.whole ? ", and all travels are whole numbers" : "",
+                             ": travels look like ", unit),
                 rows.whole ? "multiply them by the metres per tick" : "convert them to metres");
   }
 }
@@ -82,19 +82,20 @@ void check_spikes(Checked& checked, const Rows& rows) {
   }
   if (spikes.empty()) return;
   const std::size_t first = spikes.front();
-  checked.note("drive.csv", wheel_columns(checked.recording.drive), "spike",
-               joined("the row at t = ", figure(drive.t[first], "s"), " travels ",
-                      figure(larger_travel(drive, first, checked.wheelbase), "m"),
-                      ", where 99 of 100 stay below ", figure(usual * drive.duration(first), "m"),
-                      spikes.size() > 1 ? joined("; ", spikes.size(), " rows like it") : ""),
-               "correct or remove the row: an encoder's jump, or an overflow of its counter");
+  checked.note(
+      "drive.csv", wheel_columns(checked.recording.drive), "spike",
+      text::joined("the row at t = ", figure(drive.t[first], "s"), " travels ",
+                   figure(larger_travel(drive, first, checked.wheelbase), "m"),
+                   ", where 99 of 100 stay below ", figure(usual * drive.duration(first), "m"),
+                   spikes.size() > 1 ? text::joined("; ", spikes.size(), " rows like it") : ""),
+      "correct or remove the row: an encoder's jump, or an overflow of its counter");
 }
 
 }  // namespace
 
 double larger_travel(const MotionRows& drive, std::size_t row, double wheelbase) {
   const auto [left, right] =
-      drive.pair.empty() ? wheel_travel(drive.motion(row), wheelbase) : drive.pair.at(row);
+      drive.pair.empty() ? drive::wheel_travel(drive.motion(row), wheelbase) : drive.pair.at(row);
   const double ahead = std::max(std::abs(left), std::abs(right));
   return drive.sideways.empty() ? ahead : std::hypot(ahead, drive.sideways[row]);
 }
@@ -114,4 +115,4 @@ void check_drive_values(Checked& checked) {
   if (checked.recording.drive.of_two_wheels()) check_still_wheels(checked);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

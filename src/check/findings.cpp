@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::check {
 
 void Checked::add(const char* file, const std::string& column, const char* kind,
                   const std::string& evidence, const std::string& remedy) {
@@ -47,7 +47,7 @@ void add_lone_wheel(Checked& checked, WheelMistake mistake, const std::string& e
 }
 
 std::string figure(double value, const char* unit) {
-  const std::string text = short_text(value, 3);
+  const std::string text = text::short_text(value, 3);
   return *unit == '\0' ? text : text + " " + unit;
 }
 
@@ -67,6 +67,10 @@ std::string unit_of_ratio(double ratio) {
 bool looks_like_a_unit(double ratio) {
   return !unit_of_ratio(ratio).empty() || !unit_of_ratio(1.0 / ratio).empty();
 }
+
+}  // namespace trussmap::check
+
+namespace trussmap {
 
 const std::vector<std::string>& check_kinds() {
   static const std::vector<std::string> kKinds = {"travel unit",
@@ -122,8 +126,8 @@ const std::vector<std::string>& check_kinds() {
 }
 
 std::string in_words(const CheckFinding& finding) {
-  return joined(finding.file, finding.column.empty() ? "" : ", " + finding.column, ": ",
-                finding.kind, ": ", finding.evidence, "; remedy: ", finding.remedy);
+  return text::joined(finding.file, finding.column.empty() ? "" : ", " + finding.column, ": ",
+                      finding.kind, ": ", finding.evidence, "; remedy: ", finding.remedy);
 }
 
 }  // namespace trussmap

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 
 using CheckFindings = std::vector<CheckFinding>;
 
@@ -207,4 +207,4 @@ inline constexpr double kCompassTurned = 0.35;
 /// Whether it, or its inverse, looks like one.
 [[nodiscard]] bool looks_like_a_unit(double ratio);
 
-}  // namespace trussmap
+}  // namespace trussmap::check

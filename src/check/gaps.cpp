@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kLongGap = 5.0;    // s
@@ -67,14 +67,14 @@ bool rests_in(const MotionRows& drive, std::size_t row, const UsualRow& usual, d
 std::optional<bool> stands_by_truth(const DrivenRecording& recording,
                                     const std::vector<double>& path, double from, double to) {
   const MotionRows& drive = recording.drive;
-  const double here = path_at(drive, path, from);
+  const double here = drive::path_at(drive, path, from);
   const TruthRow* first = nullptr;
   bool late = false;
   for (auto at = first_from(recording.truth, std::max(from - kBeside, drive.start()));
        at != recording.truth.end(); ++at) {
     const TruthRow& one = *at;
     if (one.t > std::min(to + kBeside, drive.t.back())) break;
-    if (std::abs(path_at(drive, path, one.t) - here) > kNoWay) continue;
+    if (std::abs(drive::path_at(drive, path, one.t) - here) > kNoWay) continue;
     if (first == nullptr || one.t <= from) {
       first = &one;
       continue;
@@ -151,13 +151,13 @@ void check_gaps(Checked& checked, const UsualRow& usual) {
   }
   if (gaps.empty()) return;
   const std::size_t first = gaps.front();
-  checked.note("drive.csv", "t", "gap",
-               joined("no row for ", figure(drive.duration(first), "s"),
-                      " before t = ", figure(drive.t[first], "s"), ", where a row lasts ",
-                      figure(usual.duration, "s"),
-                      gaps.size() > 1 ? joined("; ", gaps.size(), " gaps like it") : ""),
-               "find out whether the clock jumped or rows were lost; split the recording there if "
-               "the robot may have moved");
+  checked.note(
+      "drive.csv", "t", "gap",
+      text::joined("no row for ", figure(drive.duration(first), "s"), " before t = ",
+                   figure(drive.t[first], "s"), ", where a row lasts ", figure(usual.duration, "s"),
+                   gaps.size() > 1 ? text::joined("; ", gaps.size(), " gaps like it") : ""),
+      "find out whether the clock jumped or rows were lost; split the recording there if "
+      "the robot may have moved");
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kMostDegrees = 361.0;
@@ -27,7 +27,7 @@ constexpr int kEnoughLarge = 2;            // edges beyond a whole turn
 constexpr std::size_t kEnoughTurns = 3;
 
 PoseGraph in_radians(PoseGraph graph, std::size_t edges) {
-  for (std::size_t k = 0; k < edges; ++k) graph.pose_edges[k].measured.heading *= kDegree;
+  for (std::size_t k = 0; k < edges; ++k) graph.pose_edges[k].measured.heading *= geometry::kDegree;
   return graph;
 }
 
@@ -46,8 +46,8 @@ bool beyond_a_turn(const CheckedGraph& checked, double largest) {
   int turning = 0;
   for (std::size_t k = 0; k < checked.edges_given; ++k) {
     const double turn = std::abs(checked.graph.pose_edges[k].measured.heading);
-    if (turn > kFullTurn) ++beyond;
-    if (turn > kDegree) ++turning;
+    if (turn > geometry::kFullTurn) ++beyond;
+    if (turn > geometry::kDegree) ++turning;
   }
   return beyond >= kEnoughLarge && 50 * beyond >= turning;
 }
@@ -83,12 +83,12 @@ VertexTurns vertex_turns(const CheckedGraph& checked) {
     const GraphVertex& to = checked.graph.vertices[idx(edge.to)];
     if (!from.estimate || !to.estimate || closes_loop(checked.graph, edge)) continue;
     const double turn = to.estimate->heading - from.estimate->heading;
-    if (std::abs(turn) < kDegree) continue;
+    if (std::abs(turn) < geometry::kDegree) continue;
     as_stated.push_back(std::abs(wrap_angle(turn - edge.measured.heading)));
-    in_degrees.push_back(std::abs(wrap_angle(kDegree * turn - edge.measured.heading)));
+    in_degrees.push_back(std::abs(wrap_angle(geometry::kDegree * turn - edge.measured.heading)));
   }
   if (as_stated.empty()) return {};
-  return {median(as_stated), median(in_degrees), as_stated.size()};
+  return {statistics::median(as_stated), statistics::median(in_degrees), as_stated.size()};
 }
 
 bool vertices_in_degrees(const CheckedGraph& checked) {
@@ -96,7 +96,7 @@ bool vertices_in_degrees(const CheckedGraph& checked) {
   for (const GraphVertex& one : checked.graph.vertices) {
     if (one.estimate) largest = std::max(largest, std::abs(one.estimate->heading));
   }
-  if (largest < kFullTurn) return false;
+  if (largest < geometry::kFullTurn) return false;
   const VertexTurns turns = vertex_turns(checked);
   return turns.turns >= kEnoughTurns && turns.as_stated > 5.0 * turns.in_degrees &&
          turns.in_degrees < kVerticesDisagree;
@@ -104,7 +104,7 @@ bool vertices_in_degrees(const CheckedGraph& checked) {
 
 void mend_vertices(PoseGraph& graph) {
   for (GraphVertex& one : graph.vertices) {
-    if (one.estimate) one.estimate->heading *= kDegree;
+    if (one.estimate) one.estimate->heading *= geometry::kDegree;
   }
 }
 
@@ -125,8 +125,9 @@ void check_graph_headings(CheckedGraph& checked) {
   const bool vertices = vertices_in_degrees(checked);
   if (vertices) mend_vertices(checked.graph);
   if (edges) {
-    add_degrees(checked, vertices ? "theta,dtheta" : "dtheta",
-                joined("turns reach ", figure(largest), ", as degrees do and radians do not"));
+    add_degrees(
+        checked, vertices ? "theta,dtheta" : "dtheta",
+        text::joined("turns reach ", figure(largest), ", as degrees do and radians do not"));
   } else if (vertices) {
     add_degrees(checked, "theta",
                 "the vertices' headings turn with the edges if they are taken for degrees, and not "
@@ -143,9 +144,10 @@ void check_small_turns(CheckedGraph& checked) {
   const double ratio = fit.chi2 / std::max(better.chi2, 1e-12 * fit.chi2);
   const bool suits = checked.all_alike || better.per_dof() < kSuits;
   if (!suits || ratio < kFarBetter || 0.5 * fit.dof * std::log(ratio) < kSurelyBetter) return;
-  add_degrees(checked, "dtheta",
-              joined("chi2 is ", figure(fit.chi2), " for ", fit.dof, " degrees of freedom, and ",
-                     figure(better.chi2), " with the edges' turns taken for degrees"));
+  add_degrees(
+      checked, "dtheta",
+      text::joined("chi2 is ", figure(fit.chi2), " for ", fit.dof, " degrees of freedom, and ",
+                   figure(better.chi2), " with the edges' turns taken for degrees"));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

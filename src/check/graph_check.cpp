@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::check {
 
 void CheckedGraph::add(const std::string& column, const char* kind, const std::string& evidence,
                        const std::string& remedy) {
@@ -22,7 +22,7 @@ std::int64_t CheckedGraph::id(int vertex) const {
 }
 
 std::string CheckedGraph::ends(int from, int to) const {
-  return joined(id(from), " to ", id(to));
+  return text::joined(id(from), " to ", id(to));
 }
 
 bool check_loops(CheckedGraph& checked) {
@@ -34,23 +34,30 @@ bool check_loops(CheckedGraph& checked) {
   std::string which = "reversing ";
   if (found->all) {
     which += checked.loops.size() == 1 ? "the one loop, "
-                                       : joined("all ", checked.loops.size(), " loops, ");
+                                       : text::joined("all ", checked.loops.size(), " loops, ");
   } else {
-    which += joined(found->edges.size(), " of ", checked.loops.size(), " loops, ");
+    which += text::joined(found->edges.size(), " of ", checked.loops.size(), " loops, ");
   }
   for (std::size_t k = 0; k < std::min(kNamed, found->edges.size()); ++k) {
     const PoseEdge& edge = checked.graph.pose_edges[idx(found->edges[k])];
-    which += joined(k == 0 ? "" : ", ", checked.ends(edge.from, edge.to));
+    which += text::joined(k == 0 ? "" : ", ", checked.ends(edge.from, edge.to));
   }
-  if (found->edges.size() > kNamed) which += joined(" and ", found->edges.size() - kNamed, " more");
+  if (found->edges.size() > kNamed)
+    which += text::joined(" and ", found->edges.size() - kNamed, " more");
   checked.add(
       "EDGE", "loops reversed",
-      joined(which, ", explains ", found->after < 0.2 * found->before ? "the misfit: " : "it: ",
-             "chi2 ", figure(found->before), " becomes ", figure(found->after), " for ",
-             checked.fit.dof, " degrees of freedom"),
+      text::joined(which, ", explains ",
+                   found->after < 0.2 * found->before ? "the misfit: " : "it: ", "chi2 ",
+                   figure(found->before), " becomes ", figure(found->after), " for ",
+                   checked.fit.dof, " degrees of freedom"),
       "an edge i j gives j as seen from i: exchange the two ids, or invert the measured pose");
   return true;
 }
+
+}  // namespace trussmap::check
+
+namespace trussmap {
+using namespace check;
 
 std::vector<CheckFinding> check_graph(const PoseGraph& graph, const std::string& file) {
   if (graph.edges() == 0) throw std::invalid_argument("the graph has no edges");

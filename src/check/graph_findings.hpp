@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 
 /// A graph as far as it has been put right: what is found wrong is mended for the parts that
 /// follow.
@@ -48,4 +48,4 @@ bool check_loops(CheckedGraph& checked);
 /// Vertices that can move although all is tied together.
 void check_loose(CheckedGraph& checked);
 
-}  // namespace trussmap
+}  // namespace trussmap::check

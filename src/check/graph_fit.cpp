@@ -12,10 +12,10 @@
 #include <cstdlib>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
-constexpr DescentOptions kQuickFit{30, 1e-5};
+constexpr linalg::DescentOptions kQuickFit{30, 1e-5};
 constexpr double kWellFitted = 3.0;  // chi^2 per degree of freedom that needs no second start
 
 struct QuickStart {
@@ -24,20 +24,22 @@ struct QuickStart {
 };
 
 std::vector<QuickStart> quick_starts(const PoseGraph& graph, const std::vector<std::uint8_t>& held,
-                                     PoseGraphSystem& system) {
+                                     pose_graph::PoseGraphSystem& system) {
   std::vector<QuickStart> starts;
   const auto add = [&](std::vector<Pose> estimates) {
     const double chi2 = system.chi_squared(estimates);
     starts.push_back({std::move(estimates), chi2});
   };
   if (graph.pose_edges.empty()) {
-    add(chain_measurements(graph, held, Tree::odometry));
+    add(pose_graph::chain_measurements(graph, held, pose_graph::Tree::odometry));
   } else {
-    HeadingSystem headings(graph, held, system.order());
-    const std::vector<Pose> nearest = chain_measurements(graph, held, Tree::nearest);
-    add(fit_positions(system, headings.fit(nearest)));
-    add(fit_positions(system, headings.relax(nearest)));
-    add(fit_positions(system, headings.fit(chain_measurements(graph, held, Tree::odometry))));
+    pose_graph::HeadingSystem headings(graph, held, system.order());
+    const std::vector<Pose> nearest =
+        pose_graph::chain_measurements(graph, held, pose_graph::Tree::nearest);
+    add(pose_graph::fit_positions(system, headings.fit(nearest)));
+    add(pose_graph::fit_positions(system, headings.relax(nearest)));
+    add(pose_graph::fit_positions(system, headings.fit(pose_graph::chain_measurements(
+                                              graph, held, pose_graph::Tree::odometry))));
   }
   const bool stated = std::all_of(graph.vertices.begin(), graph.vertices.end(),
                                   [](const GraphVertex& one) { return one.estimate.has_value(); });
@@ -54,13 +56,14 @@ std::vector<QuickStart> quick_starts(const PoseGraph& graph, const std::vector<s
 }  // namespace
 
 GraphFit fit_graph(const PoseGraph& graph) {
-  const std::vector<std::uint8_t> held = choose_gauge(graph);
-  PoseGraphSystem system(graph, held);
+  const std::vector<std::uint8_t> held = pose_graph::choose_gauge(graph);
+  pose_graph::PoseGraphSystem system(graph, held);
   GraphFit best;
-  best.dof = count_measurements(graph) - count_unknowns(graph, held);
+  best.dof = pose_graph::count_measurements(graph) - pose_graph::count_unknowns(graph, held);
   for (QuickStart& start : quick_starts(graph, held, system)) {
     if (!best.estimates.empty() && start.chi2 > 100.0 * best.chi2) break;
-    Descent descent = descend(system, std::move(start.estimates), kQuickFit);
+    pose_graph::Descent descent =
+        pose_graph::descend(system, std::move(start.estimates), kQuickFit);
     const bool better = best.estimates.empty() || descent.chi2 < best.chi2;
     if (better) {
       best.estimates = std::move(descent.estimates);
@@ -82,7 +85,7 @@ std::vector<double> squared_errors(const PoseGraph& graph, const std::vector<Pos
 }
 
 PoseGraph tied_together(PoseGraph graph) {
-  const std::vector<GraphPart> parts = graph_parts(graph);
+  const std::vector<pose_graph::GraphPart> parts = pose_graph::graph_parts(graph);
   for (std::size_t k = 1; k < parts.size(); ++k) {
     const bool loose = !parts[k].is_fixed() || !parts.front().is_fixed();
     if (!loose) continue;
@@ -132,4 +135,4 @@ PoseGraph with_information(PoseGraph graph,
   return graph;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -10,7 +10,7 @@
 #include <functional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 
 struct GraphFit {
   std::vector<Pose> estimates;
@@ -40,4 +40,4 @@ struct GraphFit {
 [[nodiscard]] PoseGraph with_information(
     PoseGraph graph, const std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>& changed);
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -14,7 +14,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 // A heading that is known to 2 rad is not known at all: equally likely all around it has 1.8.
@@ -51,7 +51,7 @@ double usual_heading_information(const CheckedGraph& checked) {
   for (std::size_t k = 0; k < checked.edges_given; ++k) {
     values.push_back(checked.graph.pose_edges[k].information(2, 2));
   }
-  return values.empty() ? 0.0 : median(values);
+  return values.empty() ? 0.0 : statistics::median(values);
 }
 
 /// The matrix as a covariance's inverse. Where a file gives roots R of the information R'R, the
@@ -94,12 +94,13 @@ void check_source(CheckedGraph& checked) {
   }
   const std::size_t roots = graph.source.roots;
   if (roots > 0 && roots < graph.edges()) {
-    checked.add("information", "roots beside information",
-                joined(roots, " of ", graph.edges(),
-                       " edges are iSAM's lines, whose information is read as its square root, the "
-                       "others g2o's, whose information is read as it stands"),
-                "one program's lines: EDGE_SE2 and EDGE_SE2_XY with information, or ODOMETRY and "
-                "LANDMARK with roots");
+    checked.add(
+        "information", "roots beside information",
+        text::joined(roots, " of ", graph.edges(),
+                     " edges are iSAM's lines, whose information is read as its square root, the "
+                     "others g2o's, whose information is read as it stands"),
+        "one program's lines: EDGE_SE2 and EDGE_SE2_XY with information, or ODOMETRY and "
+        "LANDMARK with roots");
   }
 }
 
@@ -116,15 +117,16 @@ void check_identity(CheckedGraph& checked) {
   checked.all_alike = true;
   if (graph.edges() < 2 || (!kinds && !lengths.vary())) return;
   std::string evidence =
-      joined("all ", graph.edges(), " edges have the identity: 1 m and 1 rad for each, ");
+      text::joined("all ", graph.edges(), " edges have the identity: 1 m and 1 rad for each, ");
   if (!checked.loops.empty() && checked.loops.size() < checked.edges_given) {
     evidence += "odometry and loops, ";
   }
-  evidence += joined("lengths from ", figure(lengths.least), " to ", figure(lengths.most, "m"));
+  evidence +=
+      text::joined("lengths from ", figure(lengths.least), " to ", figure(lengths.most, "m"));
   if (checked.fit.dof > 0) {
-    evidence +=
-        joined("; chi2 is then a sum of m^2 and rad^2, ", figure(checked.fit.chi2), " for ",
-               checked.fit.dof, " degrees of freedom, and says nothing of whether the edges agree");
+    evidence += text::joined("; chi2 is then a sum of m^2 and rad^2, ", figure(checked.fit.chi2),
+                             " for ", checked.fit.dof,
+                             " degrees of freedom, and says nothing of whether the edges agree");
   }
   checked.add("information", "identity information", evidence,
               "a note, if it is meant so; else give each edge the inverse of its covariance");
@@ -142,27 +144,27 @@ void check_covariance(CheckedGraph& checked) {
   PoseGraph mended = inverted(graph);
   std::string evidence;
   if (headings) {
-    evidence = joined("headings would be known to ", figure(1.0 / std::sqrt(known), "rad"),
-                      " at best, which is to say not at all");
+    evidence = text::joined("headings would be known to ", figure(1.0 / std::sqrt(known), "rad"),
+                            " at best, which is to say not at all");
   }
   if (tests) {
     const GraphFit inverse = fit_graph(mended);
     const double before = far_from_one(fit.per_dof());
     const double after = far_from_one(inverse.per_dof());
     if (after > std::log(kPlausible) || before < after + std::log(kSurely)) return;
-    evidence += joined(evidence.empty() ? "" : "; ", "chi2 is ", figure(fit.chi2), " for ", fit.dof,
-                       " degrees of freedom, and ", figure(inverse.chi2),
-                       " with the inverse of each matrix");
+    evidence += text::joined(evidence.empty() ? "" : "; ", "chi2 is ", figure(fit.chi2), " for ",
+                             fit.dof, " degrees of freedom, and ", figure(inverse.chi2),
+                             " with the inverse of each matrix");
     checked.fit = inverse;
   } else {
     const double position = graph.pose_edges.front().information(0, 0);
     if (1.0 / std::sqrt(position) < lengths_of(checked).most) return;
-    evidence += joined(", and positions to ", figure(1.0 / std::sqrt(position), "m"),
-                       " along edges of at most ", figure(lengths_of(checked).most, "m"));
+    evidence += text::joined(", and positions to ", figure(1.0 / std::sqrt(position), "m"),
+                             " along edges of at most ", figure(lengths_of(checked).most, "m"));
   }
   checked.add("information", "covariance for information", evidence,
               "write the inverse of each covariance");
   checked.graph = std::move(mended);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

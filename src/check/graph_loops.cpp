@@ -11,7 +11,7 @@
 #include <cmath>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kMedianOfThree = 2.366;  // chi^2 of three values
@@ -30,7 +30,7 @@ constexpr double kCooling = 2.5;  // of s^2, a round
 constexpr int kLeastRounds = 5;
 constexpr int kMostRefits = 3;
 constexpr std::size_t kFewLoops = 8;
-constexpr DescentOptions kRound{2, 1e-4};
+constexpr linalg::DescentOptions kRound{2, 1e-4};
 
 using Squares = std::vector<double>;
 
@@ -55,7 +55,7 @@ double scale_of(const PoseGraph& graph, const std::vector<int>& loops, const Gra
   if (loops.size() < kFewLoops) return whole;
   Squares squares;
   for (const int k : loops) squares.push_back(square_of(graph.pose_edges[idx(k)], fit.estimates));
-  return std::min(whole, median(squares) / kMedianOfThree);
+  return std::min(whole, statistics::median(squares) / kMedianOfThree);
 }
 
 /// What lies outside the gate, of all pose edges together: Gaussian noise has next to none.
@@ -110,7 +110,7 @@ std::vector<int> better_reversed(const PoseGraph& graph, const std::vector<int>&
     squares.push_back(
         std::min(square_of(edge, estimates), square_of(turned_round(edge), estimates)));
   }
-  const double scale = kTooGood * median(squares) / kMedianOfThree;
+  const double scale = kTooGood * statistics::median(squares) / kMedianOfThree;
   std::vector<int> edges;
   double most = 0.0;
   for (const int k : loops) {
@@ -161,11 +161,11 @@ class BothWays {
   /// The loops that suit better the other way round.
   std::vector<int> settle(std::vector<Pose> start) {
     estimates_ = std::move(start);
-    PoseGraphSystem system(graph_, choose_gauge(graph_));
+    pose_graph::PoseGraphSystem system(graph_, pose_graph::choose_gauge(graph_));
     double scale = better_scale();
     for (int round = 0; round < kMostRounds && scale > 0.0; ++round) {
       system.set_weights(weights(scale));
-      estimates_ = descend(system, std::move(estimates_), kRound).estimates;
+      estimates_ = pose_graph::descend(system, std::move(estimates_), kRound).estimates;
       const double before = scale;
       scale = std::max(better_scale(), scale / kCooling);
       if (round >= kLeastRounds && scale > 0.95 * before) break;
@@ -192,7 +192,7 @@ class BothWays {
     for (std::size_t k = 0; k < loops_.size(); ++k) {
       squares.push_back(std::min(as_given(k), reversed(k)));
     }
-    return kTooGood * median(squares) / kMedianOfThree;
+    return kTooGood * statistics::median(squares) / kMedianOfThree;
   }
 
   /// How much each of the two counts; a loop that fits neither way counts for nothing.
@@ -261,4 +261,4 @@ std::optional<ReversedLoops> reversed_loops(const PoseGraph& graph, const std::v
   return best;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -20,7 +20,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 
 struct ReversedLoops {
   std::vector<int> edges;  ///< places in pose_edges, ascending
@@ -36,4 +36,4 @@ struct ReversedLoops {
                                                           const std::vector<int>& loops,
                                                           const GraphFit& as_given, bool trusted);
 
-}  // namespace trussmap
+}  // namespace trussmap::check

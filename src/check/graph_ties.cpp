@@ -14,23 +14,23 @@
 #include <cmath>
 #include <tuple>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr std::size_t kVerticesNamed = 5;
 constexpr double kSameDigits = 2e-6;  // m, rad: six decimals, and those of an inverse
 
 std::string several(std::size_t count, const char* one, const char* many) {
-  return joined(count, " ", count == 1 ? one : many);
+  return text::joined(count, " ", count == 1 ? one : many);
 }
 
 std::string named(const CheckedGraph& checked, const std::vector<int>& vertices) {
   std::string names;
   for (std::size_t k = 0; k < std::min(kVerticesNamed, vertices.size()); ++k) {
-    names += joined(k == 0 ? "" : ", ", checked.id(vertices[k]));
+    names += text::joined(k == 0 ? "" : ", ", checked.id(vertices[k]));
   }
   if (vertices.size() > kVerticesNamed) {
-    names += joined(" and ", vertices.size() - kVerticesNamed, " more");
+    names += text::joined(" and ", vertices.size() - kVerticesNamed, " more");
   }
   return names;
 }
@@ -80,11 +80,11 @@ std::vector<Twin> twins_of(const CheckedGraph& checked) {
 }  // namespace
 
 void check_parts(CheckedGraph& checked) {
-  const std::vector<GraphPart> parts = graph_parts(checked.graph);
+  const std::vector<pose_graph::GraphPart> parts = pose_graph::graph_parts(checked.graph);
   if (parts.size() < 2) return;
   std::vector<int> alone;
-  std::vector<const GraphPart*> pieces;
-  for (const GraphPart& part : parts) {
+  std::vector<const pose_graph::GraphPart*> pieces;
+  for (const pose_graph::GraphPart& part : parts) {
     if (part.vertices.size() > 1) {
       pieces.push_back(&part);
     } else if (!part.is_fixed()) {
@@ -93,38 +93,43 @@ void check_parts(CheckedGraph& checked) {
   }
   if (!alone.empty()) {
     checked.add("VERTEX", "vertex without edges",
-                joined("no edge ties ", several(alone.size(), "vertex: ", "vertices: "),
-                       named(checked, alone)),
+                text::joined("no edge ties ", several(alone.size(), "vertex: ", "vertices: "),
+                             named(checked, alone)),
                 "add edges, or take the lines away");
   }
-  const bool loose = std::any_of(pieces.begin(), pieces.end(),
-                                 [](const GraphPart* part) { return !part->is_fixed(); });
+  const bool loose =
+      std::any_of(pieces.begin(), pieces.end(),
+                  [](const pose_graph::GraphPart* part) { return !part->is_fixed(); });
   if (pieces.size() < 2 || !loose) return;
-  const auto largest = std::max_element(pieces.begin(), pieces.end(),
-                                        [](const GraphPart* one, const GraphPart* other) {
-                                          return one->vertices.size() < other->vertices.size();
-                                        });
-  std::string evidence = joined("the graph falls into ", pieces.size(),
-                                " parts that no edge ties together: ", (*largest)->vertices.size(),
-                                " vertices with ", checked.id((*largest)->vertices.front()));
+  const auto largest =
+      std::max_element(pieces.begin(), pieces.end(),
+                       [](const pose_graph::GraphPart* one, const pose_graph::GraphPart* other) {
+                         return one->vertices.size() < other->vertices.size();
+                       });
+  std::string evidence =
+      text::joined("the graph falls into ", pieces.size(),
+                   " parts that no edge ties together: ", (*largest)->vertices.size(),
+                   " vertices with ", checked.id((*largest)->vertices.front()));
   constexpr std::size_t kPartsNamed = 3;
   std::size_t named_parts = 0;
-  for (const GraphPart* part : pieces) {
+  for (const pose_graph::GraphPart* part : pieces) {
     if (part == *largest || ++named_parts > kPartsNamed) continue;
-    evidence += joined("; ", part->vertices.size(), " (", named(checked, part->vertices), ")");
+    evidence +=
+        text::joined("; ", part->vertices.size(), " (", named(checked, part->vertices), ")");
   }
-  if (named_parts > kPartsNamed) evidence += joined("; and ", named_parts - kPartsNamed, " more");
+  if (named_parts > kPartsNamed)
+    evidence += text::joined("; and ", named_parts - kPartsNamed, " more");
   checked.add("EDGE", "separate parts", evidence,
               "add the edges that tie them, or fix a vertex of each part (FIX)");
 }
 
 void check_loose(CheckedGraph& checked) {
-  PoseGraphSystem system(checked.graph, choose_gauge(checked.graph));
-  const std::vector<int> loose = find_loose_vertices(system, checked.fit.estimates);
+  pose_graph::PoseGraphSystem system(checked.graph, pose_graph::choose_gauge(checked.graph));
+  const std::vector<int> loose = pose_graph::find_loose_vertices(system, checked.fit.estimates);
   if (loose.empty()) return;
   checked.add("EDGE", "loose vertex",
-              joined(several(loose.size(), "vertex", "vertices"),
-                     " can move without contradicting any edge: ", named(checked, loose)),
+              text::joined(several(loose.size(), "vertex", "vertices"),
+                           " can move without contradicting any edge: ", named(checked, loose)),
               "measure more of them: a pose that sees one landmark alone can turn about it");
 }
 
@@ -150,10 +155,10 @@ void check_duplicates(CheckedGraph& checked) {
   }
   if (first == nullptr) return;
   checked.add("EDGE", "duplicate edges",
-              joined(several(count, "edge says", "edges say"),
-                     " to the last digit what another one says already, the first of them ",
-                     checked.ends(first->low, first->high)),
+              text::joined(several(count, "edge says", "edges say"),
+                           " to the last digit what another one says already, the first of them ",
+                           checked.ends(first->low, first->high)),
               "give each measurement once: counted twice it weighs twice");
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kGyroStretch = 0.3;  // rad, by the wheels
@@ -45,12 +45,12 @@ TurnAgreement check_gyro(Checked& checked) {
   if (std::abs(result.correlation) < kClearGyro) return result;
   result.sign = result.correlation > 0.0 ? 1 : -1;
   const double times = std::sqrt(gg / ww);
-  if (checked.wheelbase_known && std::abs(std::log(times / kDegrees)) < std::log(kFar)) {
+  if (checked.wheelbase_known && std::abs(std::log(times / geometry::kDegrees)) < std::log(kFar)) {
     checked.add("drive.csv", "yaw_rate", "angle unit",
-                joined("the gyro turns ", figure(times), " times as far as the wheels"),
+                text::joined("the gyro turns ", figure(times), " times as far as the wheels"),
                 "convert the yaw rates to rad/s");
   }
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -11,6 +11,8 @@
 #include <vector>
 
 namespace trussmap {
+using namespace check;
+
 namespace {
 
 void mend_counters(MendedRecording& mended, const Model* model) {
@@ -20,22 +22,22 @@ void mend_counters(MendedRecording& mended, const Model* model) {
   if (glitches.empty()) return;
   const std::vector<std::string> names = names_of_wheels(drive);
   for (const CounterJump& one : glitches) {
-    mended.notes.push_back(joined("drive.csv: ", names[one.column], " of rows ", one.row + 1,
-                                  " and ", one.back + 1, " shared evenly"));
+    mended.notes.push_back(text::joined("drive.csv: ", names[one.column], " of rows ", one.row + 1,
+                                        " and ", one.back + 1, " shared evenly"));
   }
   recording = without_glitches(std::move(recording), glitches, names);
 }
 
 template <typename Rows>
 void leave_repeats_out(Rows& rows, const char* file, std::vector<std::string>& notes) {
-  const std::vector<bool> repeated = repeated_rows(rows);
+  const std::vector<bool> repeated = recording::repeated_rows(rows);
   Rows kept;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (!repeated[k]) kept.push_back(std::move(rows[k]));
   }
   if (kept.size() < repeated.size()) {
-    notes.push_back(
-        joined(file, ": ", repeated.size() - kept.size(), " rows that stood there twice left out"));
+    notes.push_back(text::joined(file, ": ", repeated.size() - kept.size(),
+                                 " rows that stood there twice left out"));
   }
   rows = std::move(kept);
 }
@@ -46,7 +48,7 @@ void set_clock_back(MendedRecording& mended) {
   Drive& drive = recording.drive;
   std::vector<double> durations;
   for (std::size_t row = 0; row < drive.rows(); ++row) durations.push_back(drive.duration(row));
-  const double usual = median(std::move(durations));
+  const double usual = statistics::median(std::move(durations));
   for (const std::size_t row : clock_jumps(drive, {usual, 0.0})) {
     const double last = drive.t[row - 1];
     const double jump = drive.t[row] - last - usual;
@@ -59,8 +61,9 @@ void set_clock_back(MendedRecording& mended) {
       back(one.t);
       back(one.t2);
     }
-    mended.notes.push_back(joined("all files: ", shortest_text(jump),
-                                  " s taken off the times after ", shortest_text(last), " s"));
+    mended.notes.push_back(text::joined("all files: ", text::shortest_text(jump),
+                                        " s taken off the times after ", text::shortest_text(last),
+                                        " s"));
   }
 }
 

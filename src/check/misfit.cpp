@@ -15,7 +15,7 @@
 
 #include <Eigen/Dense>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kSampleTurn = 0.5;         // rad, of a sample
@@ -63,7 +63,7 @@ class TurnMisfit {
 };
 
 /// A sensor's unit and sign, rad per unit.
-constexpr std::array<double, 4> kUnits{1.0, -1.0, kDegree, -kDegree};
+constexpr std::array<double, 4> kUnits{1.0, -1.0, geometry::kDegree, -geometry::kDegree};
 
 struct Window {
   const DrivenRecording& recording;
@@ -324,4 +324,4 @@ std::optional<std::vector<Misfit>> misfits_below(double limit, const DrivenRecor
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

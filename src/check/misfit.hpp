@@ -24,7 +24,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 
 enum class Witness { other_wheels, compass, gyro, truth, views, survey, fixes };
 /// "the compass", ...
@@ -52,4 +52,4 @@ struct MisfitFrame {
                                                                const MotionRows& drive,
                                                                const MisfitFrame& frame);
 
-}  // namespace trussmap
+}  // namespace trussmap::check

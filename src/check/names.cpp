@@ -10,7 +10,7 @@
 #include <optional>
 #include <set>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 bool has_blanks(std::string_view name) {
@@ -22,9 +22,9 @@ void check_blanks(Checked& checked, const char* file, const std::set<std::string
   if (first == names.end()) return;
   const auto count = std::count_if(names.begin(), names.end(), has_blanks);
   checked.add(file, "landmark", "blank in a name",
-              joined("landmark \"", *first, "\" begins or ends with a blank",
-                     count > 1 ? joined("; ", count, " names do") : "",
-                     ": it is another than the one without"),
+              text::joined("landmark \"", *first, "\" begins or ends with a blank",
+                           count > 1 ? text::joined("; ", count, " names do") : "",
+                           ": it is another than the one without"),
               "remove the blanks");
 }
 
@@ -86,11 +86,11 @@ void check_two_places(Checked& checked, const Visits& visits, const UsualMiss& u
   const auto landmarks = static_cast<double>(visits.size());
   if (static_cast<double>(splits.size()) > std::max(1.0, kShareOthers * landmarks)) return;
   for (const auto& [name, split] : splits) {
-    checked.add(
-        "sightings.csv", "landmark", "one name at two places",
-        joined("landmark ", name, " is found in ", split.first, " visits at one place and in ",
-               split.second, " at another, ", figure(split.apart, "m"), " from it"),
-        "look for a second landmark of that name, or one that was moved");
+    checked.add("sightings.csv", "landmark", "one name at two places",
+                text::joined("landmark ", name, " is found in ", split.first,
+                             " visits at one place and in ", split.second, " at another, ",
+                             figure(split.apart, "m"), " from it"),
+                "look for a second landmark of that name, or one that was moved");
   }
 }
 
@@ -114,4 +114,4 @@ void check_labels(Checked& checked, const Track& track, bool by_truth) {
   check_wrong_labels(checked, visits_of(checked, track, by_truth, 0.0), usual);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

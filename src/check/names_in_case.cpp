@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 using Names = std::set<std::string_view>;
@@ -63,12 +63,13 @@ std::vector<Twins> twins_within(const Names& names) {
 void add_twins(Checked& checked, const char* file, const std::vector<Twins>& twins,
                const char* first_is, const char* second_is) {
   if (twins.empty()) return;
-  checked.add(file, "landmark", "names differ in case",
-              joined("landmark \"", twins.front().one, "\"", first_is, " and \"",
-                     twins.front().other, "\"", second_is, " differ in upper and lower case alone",
-                     twins.size() > 1 ? joined("; ", twins.size(), " pairs do") : "",
-                     ": they are two landmarks"),
-              "give each landmark one name");
+  checked.add(
+      file, "landmark", "names differ in case",
+      text::joined("landmark \"", twins.front().one, "\"", first_is, " and \"", twins.front().other,
+                   "\"", second_is, " differ in upper and lower case alone",
+                   twins.size() > 1 ? text::joined("; ", twins.size(), " pairs do") : "",
+                   ": they are two landmarks"),
+      "give each landmark one name");
 }
 
 }  // namespace
@@ -82,4 +83,4 @@ void check_case(Checked& checked) {
   add_twins(checked, "sightings.csv", twins_within(sighted), "", "");
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -15,7 +15,7 @@
 #include <set>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kDisagrees = 0.15;  // misfit, with whatever mistake of the sensor's
@@ -79,7 +79,7 @@ std::vector<MistakeExplanation> explanations(const Checked& checked, const Misfi
 }
 
 std::string percent(double share) {
-  return fixed_text(100.0 * share, 0) + " %";
+  return text::fixed_text(100.0 * share, 0) + " %";
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ bool steers_in_degrees(const Recording& recording, const Robot& robot) {
   const double most = tricycle ? 2.0 * std::numbers::pi : 0.5 * std::numbers::pi;
   std::size_t beyond = 0;
   for (const double angle : steer->values) {
-    if (!(std::abs(kDegree * angle) <= 2.0 * std::numbers::pi)) return false;
+    if (!(std::abs(geometry::kDegree * angle) <= 2.0 * std::numbers::pi)) return false;
     if (std::abs(angle) > most) ++beyond;
   }
   return static_cast<double>(beyond) > kSome * static_cast<double>(steer->values.size());
@@ -123,11 +123,12 @@ void check_other_drive(Checked& checked) {
   }
   std::string columns;
   for (const std::size_t k : which) columns += (columns.empty() ? "" : ",") + robot.columns[k];
-  checked.add("drive.csv", columns, found.front().mistake.kind,
-              joined("as recorded the drive is ", percent(worst.misfit), " off ",
-                     name_of(worst.witness), "; ", words, " it is ", percent(found.front().misfit),
-                     " off", recorded.size() > 1 ? " at most" : ""),
-              remedy);
+  checked.add(
+      "drive.csv", columns, found.front().mistake.kind,
+      text::joined("as recorded the drive is ", percent(worst.misfit), " off ",
+                   name_of(worst.witness), "; ", words, " it is ", percent(found.front().misfit),
+                   " off", recorded.size() > 1 ? " at most" : ""),
+      remedy);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 class List {
@@ -88,8 +88,8 @@ std::vector<OtherDriveMistake> other_drive_mistakes(const Robot& robot) {
   List list(count);
   if (robot.drive == DriveKind::tricycle || robot.drive == DriveKind::ackermann) {
     list.scaled(1, -1.0, "steering clockwise");
-    list.scaled(1, kDegree, "angle unit");
-    list.scaled(1, -kDegree, "angle unit");
+    list.scaled(1, geometry::kDegree, "angle unit");
+    list.scaled(1, -geometry::kDegree, "angle unit");
     list.negated({0}, "wheel negated");
     list.exchanged(0, 1);
     return list.take();
@@ -145,7 +145,7 @@ std::string remedy_of(const OtherDriveMistake& mistake, const Robot& robot) {
 
 std::optional<MotionRows> drive_without(const OtherDriveMistake& mistake, const MotionRows& drive,
                                         const Robot& robot) {
-  const WheelKinematics kinematics(robot);
+  const drive::WheelKinematics kinematics(robot);
   MotionRows result;
   result.t = drive.t;
   kinematics.prepare(result, drive.rows());
@@ -164,4 +164,4 @@ std::optional<MotionRows> drive_without(const OtherDriveMistake& mistake, const 
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

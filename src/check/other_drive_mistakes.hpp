@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 
 struct OtherDriveMistake {
   const char* kind = "";             ///< one of check_kinds()
@@ -42,4 +42,4 @@ struct OtherDriveMistake {
 [[nodiscard]] std::optional<MotionRows> drive_without(const OtherDriveMistake& mistake,
                                                       const MotionRows& drive, const Robot& robot);
 
-}  // namespace trussmap
+}  // namespace trussmap::check

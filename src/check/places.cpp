@@ -14,7 +14,7 @@
 
 #include <Eigen/Dense>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kTogether = 2.0;  // s of ranges that make a place
@@ -34,7 +34,7 @@ double noise_of(const std::vector<TimedPlace>& all) {
     const double share = (all[k].t - a.t) / (b.t - a.t);
     off.push_back((all[k].at - a.at - share * (b.at - a.at)).norm());
   }
-  return off.empty() ? 0.0 : kBySum * median(std::move(off));
+  return off.empty() ? 0.0 : kBySum * statistics::median(std::move(off));
 }
 
 bool within(const MotionRows& drive, double t) {
@@ -126,7 +126,7 @@ PlacesSeen places_by_fixes(const DrivenRecording& recording) {
     if (!std::isnan(one.sd)) stated.push_back(one.sd);
   }
   seen.noise = noise_of(seen.all);
-  if (!stated.empty()) seen.noise = std::max(seen.noise, median(std::move(stated)));
+  if (!stated.empty()) seen.noise = std::max(seen.noise, statistics::median(std::move(stated)));
   return seen;
 }
 
@@ -167,4 +167,4 @@ PlacesSeen places_by_truth(const DrivenRecording& recording) {
   return seen;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

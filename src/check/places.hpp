@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 
 struct TimedPlace {
   double t = 0.0;  ///< s
@@ -36,4 +36,4 @@ struct PlacesSeen {
 [[nodiscard]] PlacesSeen places_by_ranges(const DrivenRecording& recording);
 [[nodiscard]] PlacesSeen places_by_truth(const DrivenRecording& recording);
 
-}  // namespace trussmap
+}  // namespace trussmap::check

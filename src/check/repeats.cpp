@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 void add_repeats(Checked& checked, const char* file, const std::vector<bool>& repeated,
@@ -20,10 +20,11 @@ void add_repeats(Checked& checked, const char* file, const std::vector<bool>& re
   const auto all = static_cast<std::ptrdiff_t>(repeated.size());
   checked.findings.push_back(
       {checked.recording.name + "/" + file, "", "rows twice",
-       joined(2 * count == all ? "every row stands twice"
-                               : joined(count, count == 1 ? " row stands" : " rows stand",
-                                        " there a second time, the same to the last digit"),
-              " (the first is ", first, "); of ", all, " rows ", all - count, " are used"),
+       text::joined(2 * count == all
+                        ? "every row stands twice"
+                        : text::joined(count, count == 1 ? " row stands" : " rows stand",
+                                       " there a second time, the same to the last digit"),
+                    " (the first is ", first, "); of ", all, " rows ", all - count, " are used"),
        "remove the copies: one measurement counts once"});
 }
 
@@ -35,19 +36,20 @@ void check_repeats(Checked& checked) {
     return static_cast<std::size_t>(std::find(repeated.begin(), repeated.end(), true) -
                                     repeated.begin());
   };
-  const std::vector<bool> sightings = repeated_rows(recording.sightings);
+  const std::vector<bool> sightings = recording::repeated_rows(recording.sightings);
   if (const std::size_t k = place_of(sightings); k < sightings.size()) {
     const Sighting& one = recording.sightings[k];
-    add_repeats(checked, "sightings.csv", sightings,
-                joined("that of ", one.landmark, " at t = ", shortest_text(one.t), " s"));
+    add_repeats(
+        checked, "sightings.csv", sightings,
+        text::joined("that of ", one.landmark, " at t = ", text::shortest_text(one.t), " s"));
   }
-  const std::vector<bool> loops = repeated_rows(recording.loops);
+  const std::vector<bool> loops = recording::repeated_rows(recording.loops);
   if (const std::size_t k = place_of(loops); k < loops.size()) {
     const Loop& one = recording.loops[k];
-    add_repeats(
-        checked, "loops.csv", loops,
-        joined("that from t = ", shortest_text(one.t), " s to ", shortest_text(one.t2), " s"));
+    add_repeats(checked, "loops.csv", loops,
+                text::joined("that from t = ", text::shortest_text(one.t), " s to ",
+                             text::shortest_text(one.t2), " s"));
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kHardlyMoves = 0.05;  // of the motion that something else shows, and
@@ -72,7 +72,7 @@ Moved moved_by(const PlacesSeen& places, const Checked& checked, const Track& tr
     before = &one;
   }
   moved.chords = ratios.size();
-  if (!ratios.empty()) moved.by_wheels = median(std::move(ratios));
+  if (!ratios.empty()) moved.by_wheels = statistics::median(std::move(ratios));
   return moved;
 }
 
@@ -235,9 +235,9 @@ void check_no_travel(Checked& checked, const Track& track) {
     const Moved moved = moved_by(places, checked, track);
     if (moved.chords < kFewestChords || moved.by_wheels > kHardlyMoves) continue;
     checked.add("drive.csv", wheel_columns(drive), "no travel",
-                joined("the wheels turn the robot by ", figure(sums.turn, "rad"),
-                       " in all and never travel (", figure(sums.path, "m"), "), while it moves ",
-                       figure(moved.chord, "m"), " by ", places.name),
+                text::joined("the wheels turn the robot by ", figure(sums.turn, "rad"),
+                             " in all and never travel (", figure(sums.path, "m"),
+                             "), while it moves ", figure(moved.chord, "m"), " by ", places.name),
                 "look where the travels come from: the forward speed, or what both wheels have in "
                 "common, was left out");
     return;
@@ -271,12 +271,12 @@ void check_no_turning(Checked& checked, const Track& track) {
   }
   if (turning.empty()) return;
   const std::string wheels = same ? std::string(": left and right are the same in every row")
-                                  : joined(" (", figure(sums.turn, "rad"), " in all)");
+                                  : text::joined(" (", figure(sums.turn, "rad"), " in all)");
   checked.add("drive.csv", wheel_columns(drive), "no turning",
-              joined("the wheels show no turning", wheels, ", while the robot turns by ",
-                     and_others(turning)),
+              text::joined("the wheels show no turning", wheels, ", while the robot turns by ",
+                           and_others(turning)),
               "look where the travels come from: one wheel's counts in both columns, or one speed "
               "for both");
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kStillTime = 20.0;   // s, of the one wheel of a drive that is steered
@@ -103,15 +103,16 @@ void ask_wheel(Checked& checked, std::size_t column) {
   const std::optional<Misfit> worst = contradiction(checked, still);
   if (worst ? worst->best < kContradicts : !is_unlikely(checked, still)) return;
   const std::string& name = drive.wheels[column].name;
-  checked.add("drive.csv", name, "still wheel",
-              joined(name, whole ? " never moves" : " stands still until t = ",
-                     whole ? "" : figure(drive.t[still.end - 1], "s"),
-                     only ? joined(" for ", figure(time, "s"))
-                          : joined(", where another wheel goes ", figure(still.travel, "m")),
-                     worst ? joined(", and the motion that is left is not that of ",
-                                    name_of(worst->witness))
-                           : ""),
-              "look at the encoder's cable and at the column's source");
+  checked.add(
+      "drive.csv", name, "still wheel",
+      text::joined(name, whole ? " never moves" : " stands still until t = ",
+                   whole ? "" : figure(drive.t[still.end - 1], "s"),
+                   only ? text::joined(" for ", figure(time, "s"))
+                        : text::joined(", where another wheel goes ", figure(still.travel, "m")),
+                   worst ? text::joined(", and the motion that is left is not that of ",
+                                        name_of(worst->witness))
+                         : ""),
+      "look at the encoder's cable and at the column's source");
 }
 
 void ask_steering(Checked& checked, std::size_t column) {
@@ -122,11 +123,11 @@ void ask_steering(Checked& checked, std::size_t column) {
   const std::optional<Misfit> worst = contradiction(checked, {0, drive.rows(), 0.0});
   if (!worst || worst->best < kContradicts) return;
   const std::string& name = drive.wheels[column].name;
-  checked.add(
-      "drive.csv", name, "still steering",
-      joined(name, " is ", figure(*most, "rad"),
-             " in every row, and the motion that is left is not that of ", name_of(worst->witness)),
-      "look at the angle sensor's cable and at the column's source");
+  checked.add("drive.csv", name, "still steering",
+              text::joined(name, " is ", figure(*most, "rad"),
+                           " in every row, and the motion that is left is not that of ",
+                           name_of(worst->witness)),
+              "look at the angle sensor's cable and at the column's source");
 }
 
 }  // namespace
@@ -143,4 +144,4 @@ void check_still_columns(Checked& checked) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

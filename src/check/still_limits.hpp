@@ -5,10 +5,10 @@
 // readings may be.
 #pragma once
 
-namespace trussmap {
+namespace trussmap::check {
 
 inline constexpr double kStillTurns = 30.0;   // wheelbases: five turns about the wheel
 inline constexpr double kStillTravel = 10.0;  // m
 inline constexpr double kUntold = 2.5;  // rad from reading to reading: whole turns are not told
 
-}  // namespace trussmap
+}  // namespace trussmap::check

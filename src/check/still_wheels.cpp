@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kStillShare = 1e-6;      // of the other wheel's way
@@ -103,7 +103,7 @@ Turned by_truth(const DrivenRecording& recording, const StillStretch& stretch,
   for (const TruthRow& one : recording.truth) {
     if (one.t < drive.t[stretch.first] || one.t > drive.t[stretch.end - 1]) continue;
     if (last != nullptr) {
-      turned.add(path_at(drive, wheels, one.t) - path_at(drive, wheels, last->t),
+      turned.add(drive::path_at(drive, wheels, one.t) - drive::path_at(drive, wheels, last->t),
                  wrap_angle(one.heading - last->heading));
     }
     last = &one;
@@ -122,7 +122,7 @@ Turned by_bearings(const DrivenRecording& recording, const StillStretch& stretch
     if (!within || std::isnan(one.bearing)) continue;
     const Sighting*& last = seen[one.landmark];
     if (last != nullptr) {
-      turned.add(path_at(drive, wheels, one.t) - path_at(drive, wheels, last->t),
+      turned.add(drive::path_at(drive, wheels, one.t) - drive::path_at(drive, wheels, last->t),
                  wrap_angle(last->bearing - one.bearing));
     }
     last = &one;
@@ -173,10 +173,10 @@ void ask(Checked& checked, const std::vector<double>& wheels, const char* name,
   const double others = way_of(other);
   if (others > 1.0 && way_of(wheel) < kStillShare * others) {
     if (turns_about_it(checked, {0, wheel.size(), others}, wheels)) return;
-    checked.add(
-        "drive.csv", name, "still wheel",
-        joined("the ", name, " wheel never moves, where the other one goes ", figure(others, "m")),
-        "look at the encoder's cable and at the column's source");
+    checked.add("drive.csv", name, "still wheel",
+                text::joined("the ", name, " wheel never moves, where the other one goes ",
+                             figure(others, "m")),
+                "look at the encoder's cable and at the column's source");
     return;
   }
   const double least = std::max(kStillTravel, kStillTurns * checked.wheelbase);
@@ -188,9 +188,9 @@ void ask(Checked& checked, const std::vector<double>& wheels, const char* name,
       stretches.begin(), stretches.end(),
       [](const StillStretch& a, const StillStretch& b) { return a.travel < b.travel; });
   checked.add("drive.csv", name, "still wheel",
-              joined("the ", name, " wheel stands still until t = ",
-                     figure(checked.recording.drive.t[longest.end - 1], "s"),
-                     " while the other one goes ", figure(longest.travel, "m")),
+              text::joined("the ", name, " wheel stands still until t = ",
+                           figure(checked.recording.drive.t[longest.end - 1], "s"),
+                           " while the other one goes ", figure(longest.travel, "m")),
               "look at the encoder: it seems to have lost its counts there");
 }
 
@@ -203,4 +203,4 @@ void check_still_wheels(Checked& checked) {
   ask(checked, wheels, "right", drive.pair.right, drive.pair.left);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

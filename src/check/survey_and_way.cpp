@@ -19,7 +19,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kLeastLength = 0.3;     // m
@@ -34,7 +34,7 @@ double ratio_of(const std::vector<SurveyLeg>& legs) {
     const double measured = leg.measured.norm();
     if (measured > kLeastMeasured) ratios.push_back(leg.surveyed.norm() / measured);
   }
-  return ratios.size() < kFewestPlaces ? 0.0 : median(std::move(ratios));
+  return ratios.size() < kFewestPlaces ? 0.0 : statistics::median(std::move(ratios));
 }
 
 struct Sign {
@@ -62,12 +62,13 @@ Sign sign_of(const std::vector<SurveyLeg>& legs, double ratio) {
     mirrored.push_back(std::abs(wrap_angle(measured + surveyed)));
   }
   if (alike.size() < kFewestPlaces) return {};
-  const double as_is = median(std::move(alike));
-  const double as_mirrored = median(std::move(mirrored));
+  const double as_is = statistics::median(std::move(alike));
+  const double as_mirrored = statistics::median(std::move(mirrored));
   if (as_is < kAlike && as_is < 0.5 * as_mirrored) return {1};
   if (as_mirrored < kAlike && as_mirrored < 0.5 * as_is) return {-1};
   constexpr double kStraight = 0.45;  // rad, what arcs on the way come to
-  return {0, std::min(as_is, as_mirrored) > kAlike, median(std::move(corners)) < kStraight};
+  return {0, std::min(as_is, as_mirrored) > kAlike,
+          statistics::median(std::move(corners)) < kStraight};
 }
 
 /// The compass's reading less the track's heading where a leg ends.
@@ -84,8 +85,8 @@ void check_compass_frame(Checked& checked, const Track& track, const std::vector
   }
   if (!offset.is_clear() || std::abs(offset.angle()) < kCompassTurned) return;
   checked.add("drive.csv", "heading", "compass turned",
-              joined("the compass reads ", figure(offset.angle() * kDegrees),
-                     " degrees more than directions in the survey have"),
+              text::joined("the compass reads ", figure(offset.angle() * geometry::kDegrees),
+                           " degrees more than directions in the survey have"),
               "let readings count from the survey's x axis, not from north");
 }
 
@@ -132,15 +133,15 @@ void check_spread(Checked& checked, const Track& track, const SurveyPlaces& plac
   const auto [mean, wide, thin] = spread_of(points);
   if (wide <= 1e-9 * (1.0 + mean.norm())) {
     checked.add("survey.csv", "x,y", "survey at one point",
-                joined("all ", points.size(), " landmarks lie at (", figure(mean.x()), ", ",
-                       figure(mean.y()), ")"),
+                text::joined("all ", points.size(), " landmarks lie at (", figure(mean.x()), ", ",
+                             figure(mean.y()), ")"),
                 "survey them one by one, or leave the file out");
   } else if (thin < kThin * wide && is_spread(checked, track)) {
-    checked.add(
-        "survey.csv", "x,y", "survey on a line",
-        joined("all ", points.size(), " landmarks lie within ", figure(thin, "m"), " of a line of ",
-               figure(wide, "m"), " (root mean squares); they were found all about"),
-        "look for a column that was written twice, or lost");
+    checked.add("survey.csv", "x,y", "survey on a line",
+                text::joined("all ", points.size(), " landmarks lie within ", figure(thin, "m"),
+                             " of a line of ", figure(wide, "m"),
+                             " (root mean squares); they were found all about"),
+                "look for a column that was written twice, or lost");
   }
 }
 
@@ -154,9 +155,9 @@ void check_units(Checked& checked, const SurveyAgreement& agreement) {
   const double ratio = off(by_way) ? by_way : by_views;
   const std::string unit = unit_of_ratio(survey ? ratio : 1.0 / ratio);
   const std::string evidence =
-      joined("from landmark to landmark the survey is ", figure(ratio), " times as long as ",
-             off(by_way) ? "the way driven" : "what is seen", " (median)",
-             unit.empty() ? "" : ": as if in " + unit);
+      text::joined("from landmark to landmark the survey is ", figure(ratio), " times as long as ",
+                   off(by_way) ? "the way driven" : "what is seen", " (median)",
+                   unit.empty() ? "" : ": as if in " + unit);
   if (survey) {
     checked.add("survey.csv", "x,y", "survey unit", evidence, "convert the survey to metres");
   } else if (off(by_way)) {
@@ -223,12 +224,13 @@ void check_survey(Checked& checked, const Track& track, const SurveyAgreement& a
   const std::set<std::string_view> sighted = sighted_landmarks(recording);
   const SurveyPlaces places = surveyed_places(recording);
   if (places.size() < 2 && sighted.size() > 1 && recording.survey.size() > 1) {
-    checked.add("survey.csv", "landmark", "other landmarks",
-                joined("of ", recording.survey.size(), " landmarks surveyed and ", sighted.size(),
-                       " sighted ", places.size(), places.size() == 1 ? " is" : " are",
-                       " the same, by name: ", recording.survey.front().landmark, ", ... against ",
-                       *sighted.begin(), ", ..."),
-                "give both files the same names");
+    checked.add(
+        "survey.csv", "landmark", "other landmarks",
+        text::joined("of ", recording.survey.size(), " landmarks surveyed and ", sighted.size(),
+                     " sighted ", places.size(), places.size() == 1 ? " is" : " are",
+                     " the same, by name: ", recording.survey.front().landmark, ", ... against ",
+                     *sighted.begin(), ", ..."),
+        "give both files the same names");
     return;
   }
   check_spread(checked, track, places);
@@ -242,4 +244,4 @@ void check_survey(Checked& checked, const Track& track, const SurveyAgreement& a
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

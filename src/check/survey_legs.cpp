@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kFarthest = 40.0;  // m between two stops
@@ -45,7 +45,7 @@ std::vector<SurveyLeg> legs_by_way(const DrivenRecording& recording, const Surve
     }
     before = &one;
   }
-  return thinned(std::move(legs), kMost);
+  return statistics::thinned(std::move(legs), kMost);
 }
 
 std::vector<SurveyLeg> legs_by_views(const DrivenRecording& recording, const SurveyPlaces& places,
@@ -62,7 +62,7 @@ std::vector<SurveyLeg> legs_by_views(const DrivenRecording& recording, const Sur
     }
     before = &one;
   }
-  return thinned(std::move(legs), kMost);
+  return statistics::thinned(std::move(legs), kMost);
 }
 
 std::vector<SurveyLeg> legs_by_fixes(const DrivenRecording& recording, const Track& track) {
@@ -88,4 +88,4 @@ std::vector<SurveyLeg> legs_by_fixes(const DrivenRecording& recording, const Tra
   return legs;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

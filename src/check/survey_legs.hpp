@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 
 struct SurveyLeg {
   std::string_view from;
@@ -39,4 +39,4 @@ using SurveyPlaces = std::map<std::string_view, Vector2>;
 [[nodiscard]] std::vector<SurveyLeg> legs_by_fixes(const DrivenRecording& recording,
                                                    const Track& track);
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -13,7 +13,7 @@
 #include <limits>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kOff = 0.5;        // m, and
@@ -179,25 +179,25 @@ void check_survey_points(Checked& checked, const SurveyAgreement& agreement) {
   constexpr std::size_t kAboutOthers = 4;
   legs = turned_onto_survey(legs, checked.recording.drive.wheels.empty() ? kAbout : kAboutOthers);
   legs = in_better_scale(std::move(legs), driven ? agreement.way_ratio : agreement.views_ratio);
-  const std::string legs_words = joined(" are not what was ", driven ? "driven" : "seen");
+  const std::string legs_words = text::joined(" are not what was ", driven ? "driven" : "seen");
   for (const By by : {By::vector, By::length}) {
     if (are_right(legs, by)) continue;
     const std::vector<std::string_view> two = exchanged_points(legs, places, by);
     if (!two.empty()) {
       checked.add("survey.csv", "landmark", "labels exchanged",
-                  joined("legs of ", two[0], " and ", two[1], legs_words,
-                         ", and are once the two are exchanged"),
+                  text::joined("legs of ", two[0], " and ", two[1], legs_words,
+                               ", and are once the two are exchanged"),
                   "exchange the two labels, in survey.csv or in sightings.csv");
       return;
     }
     const std::vector<std::string_view> points = wrong_points(legs, places.size(), by);
     for (const std::string_view name : points) {
       checked.add("survey.csv", "x,y", "survey point off",
-                  joined("legs of landmark ", name, legs_words, ", those of the others are"),
+                  text::joined("legs of landmark ", name, legs_words, ", those of the others are"),
                   "survey it again, or remove it from the file");
     }
     if (!points.empty()) return;
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::check {
 
 BodyMotion motion_without(WheelMistake mistake, const MotionRows& drive, std::size_t row,
                           double wheelbase) {
@@ -20,9 +20,9 @@ BodyMotion motion_without(WheelMistake mistake, const MotionRows& drive, std::si
     case WheelMistake::negated:
       return -1.0 * recorded;
     case WheelMistake::left_negated:
-      return body_motion({-drive.pair.left[row], drive.pair.right[row]}, wheelbase);
+      return drive::body_motion({-drive.pair.left[row], drive.pair.right[row]}, wheelbase);
     case WheelMistake::right_negated:
-      return body_motion({drive.pair.left[row], -drive.pair.right[row]}, wheelbase);
+      return drive::body_motion({drive.pair.left[row], -drive.pair.right[row]}, wheelbase);
   }
   return recorded;
 }
@@ -82,4 +82,4 @@ double Track::way_at(double t) const {
   return way_[k - 1] + share * (way_[k] - way_[k - 1]);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 
 /// Of other drives than two wheels: `exchanged` is the mirrored motion.
 enum class WheelMistake { none, exchanged, negated, left_negated, right_negated };
@@ -46,4 +46,4 @@ class Track {
   std::vector<double> way_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -13,7 +13,7 @@
 #include <complex>
 #include <numbers>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kTruthStretch = 0.5;     // m, or
@@ -119,12 +119,12 @@ void check_unit(Checked& checked, const std::vector<TruthStretch>& stretches) {
     if (way > 0.3) ratios.push_back(one.truth.norm() / way);
   }
   if (ratios.size() < kFewestTruths) return;
-  const double ratio = median(std::move(ratios));
+  const double ratio = statistics::median(std::move(ratios));
   if (!(ratio > 0.0) || !looks_like_a_unit(ratio)) return;
   const std::string unit = unit_of_ratio(ratio);
   checked.add("truth.csv", "x,y", "truth unit",
-              joined("the truth goes ", figure(ratio), " times as far as the wheels (median)",
-                     unit.empty() ? "" : ": as if in " + unit),
+              text::joined("the truth goes ", figure(ratio), " times as far as the wheels (median)",
+                           unit.empty() ? "" : ": as if in " + unit),
               "convert the truth to metres, or the wheels' travels");
 }
 
@@ -142,9 +142,9 @@ void check_turned(Checked& checked, const std::vector<TruthStretch>& stretches) 
   }
   if (!offset.is_clear() || std::abs(offset.angle()) < kTurned) return;
   checked.add("truth.csv", "heading", "truth turned",
-              joined("on straight stretches the heading lies ",
-                     figure(offset.angle() * kDegrees, "degrees"), " off the course (",
-                     offset.count(), " stretches)"),
+              text::joined("on straight stretches the heading lies ",
+                           figure(offset.angle() * geometry::kDegrees, "degrees"),
+                           " off the course (", offset.count(), " stretches)"),
               "turn the tracker's body frame to the robot's forward axis, or fit the effect "
               "\"truth heading\"");
 }
@@ -163,8 +163,8 @@ void check_compass_frame(Checked& checked) {
   }
   if (!offset.is_clear() || std::abs(offset.angle()) < kCompassTurned) return;
   checked.add("drive.csv", "heading", "compass turned",
-              joined("the compass reads ", figure(offset.angle() * kDegrees),
-                     " degrees more than the truth's heading"),
+              text::joined("the compass reads ", figure(offset.angle() * geometry::kDegrees),
+                           " degrees more than the truth's heading"),
               "readings count from the map's x axis, not from north");
 }
 
@@ -210,10 +210,11 @@ void check_truth(Checked& checked, const Track& track, const TruthAgreement& agr
   if (agreement.in_degrees) {
     checked.add(
         "truth.csv", "heading", "angle unit",
-        joined("as degrees the headings turn with the wheels (correlation ",
-               fixed_text(std::abs(correlation(stretches, 360.0)), 2),
-               "), as radians they do not (",
-               fixed_text(std::abs(correlation(stretches, 2.0 * std::numbers::pi)), 2), ")"),
+        text::joined("as degrees the headings turn with the wheels (correlation ",
+                     text::fixed_text(std::abs(correlation(stretches, 360.0)), 2),
+                     "), as radians they do not (",
+                     text::fixed_text(std::abs(correlation(stretches, 2.0 * std::numbers::pi)), 2),
+                     ")"),
         "convert the headings to radians");
   }
   if (agreement.by_heading <= 0 || agreement.by_course <= 0) return;
@@ -221,4 +222,4 @@ void check_truth(Checked& checked, const Track& track, const TruthAgreement& agr
   if (!checked.wrong.contains("truth heading")) check_compass_frame(checked);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

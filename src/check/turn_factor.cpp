@@ -11,7 +11,7 @@
 #include <complex>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 using Complex = std::complex<double>;
@@ -88,8 +88,9 @@ Course course_of(const MotionRows& drive, const std::vector<TimedPlace>& places,
   Course course{{}, {0}, centred(places, piece)};
   for (std::size_t k = piece.first + 1; k < piece.end; ++k) {
     Step sum;
-    for (const DriveRow& row : rows_between(drive, places[k - 1].t, places[k].t)) {
-      const BodyMotion motion = motion_of(drive, row);
+    for (const odometry::DriveRow& row :
+         odometry::rows_between(drive, places[k - 1].t, places[k].t)) {
+      const BodyMotion motion = odometry::motion_of(drive, row);
       sum.ahead += Complex(motion.forward, motion.sideways);
       sum.turn += motion.turn;
       if (std::abs(sum.turn) > kStraight) course.steps.push_back(std::exchange(sum, {}));
@@ -136,8 +137,8 @@ BestFactors best_factors(const std::vector<Course>& courses, int steps) {
       straight.push_back(left_of(by_wheels, one.places, false));
       mirrored.push_back(left_of(by_wheels, one.places, true));
     }
-    best.straight = std::min(best.straight, median(std::move(straight)));
-    best.mirrored = std::min(best.mirrored, median(std::move(mirrored)));
+    best.straight = std::min(best.straight, statistics::median(std::move(straight)));
+    best.mirrored = std::min(best.mirrored, statistics::median(std::move(mirrored)));
   }
   return best;
 }
@@ -188,7 +189,7 @@ std::vector<CornerPiece> corner_pieces(const std::vector<TimedPlace>& places, co
       ++first;
     }
   }
-  return thinned(std::move(pieces), kMostPieces);
+  return statistics::thinned(std::move(pieces), kMostPieces);
 }
 
 int turn_sign(const MotionRows& drive, const Track& track, const PlacesSeen& places) {
@@ -203,4 +204,4 @@ int turn_sign(const MotionRows& drive, const Track& track, const PlacesSeen& pla
   return sign_of(best_factors(courses, kNearSteps), best_factors(courses, kFarSteps));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -19,7 +19,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 
 /// Places from first to before end, in which they are no straight line.
 struct CornerPiece {
@@ -36,4 +36,4 @@ struct CornerPiece {
 /// The sign of the factor; 0: cannot be told.
 [[nodiscard]] int turn_sign(const MotionRows& drive, const Track& track, const PlacesSeen& places);
 
-}  // namespace trussmap
+}  // namespace trussmap::check

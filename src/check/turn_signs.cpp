@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kBackwards = -0.5;  // share of the way, of a robot that drives backwards
@@ -158,13 +158,13 @@ void blame(Checked& checked, const TurnSigns& signs) {
   std::string columns;
   for (const Turning one : culprits) {
     const Blame each = blame_of(one, drive, forward);
-    words += joined(words.empty() ? "" : ", or ", each.words, " (", each.file, ")");
+    words += text::joined(words.empty() ? "" : ", or ", each.words, " (", each.file, ")");
     if (std::string(each.file) == first.file) {
-      columns += joined(columns.empty() ? "" : ",", each.column);
+      columns += text::joined(columns.empty() ? "" : ",", each.column);
     }
   }
   checked.add(first.file, columns, "turns opposite", signs.seen() + ": " + words,
               "drive a left turn and look which of them gets it wrong");
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

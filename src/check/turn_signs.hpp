@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 
 /// What may count its turns the other way round.
 enum class Turning {
@@ -50,4 +50,4 @@ class TurnSigns {
 /// The finding that they are.
 void blame(Checked& checked, const TurnSigns& signs);
 
-}  // namespace trussmap
+}  // namespace trussmap::check

@@ -21,7 +21,7 @@
 #include <map>
 #include <numbers>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kLongestView = 30.0;   // s
@@ -58,7 +58,7 @@ std::vector<Pair> pairs_of(const DrivenRecording& recording, const Track& track,
     }
     before = &one;
   }
-  return thinned(std::move(pairs), kMostPairs);
+  return statistics::thinned(std::move(pairs), kMostPairs);
 }
 
 /// Those between which the robot turns: of the others a mirrored world looks the same.
@@ -109,7 +109,7 @@ double disagreement(const std::vector<Pair>& pairs, const Track& track, const Re
     const double shift = std::max({(predicted - first).norm(), way.position().norm(), turned});
     errors.push_back((predicted - second).norm() / std::max(shift, 1e-6));
   }
-  return median(std::move(errors));
+  return statistics::median(std::move(errors));
 }
 
 /// What the views would be explained by.
@@ -172,7 +172,7 @@ bool tells_place(const Sighting& sighting) {
 
 Vector2 place_seen(const Sighting& sighting, const Pose& from, double bearing_unit) {
   if (sighting.standing()) {
-    return from.position() + rotation(from.heading) * code_from_robot(sighting);
+    return from.position() + rotation(from.heading) * recording::code_from_robot(sighting);
   }
   return from.position() +
          sighting.range * rotation(from.heading + bearing_unit * sighting.bearing).col(0);
@@ -187,11 +187,12 @@ void check_bearing_unit(Checked& checked) {
   const auto beyond = std::count_if(
       sizes.begin(), sizes.end(), [](double size) { return size > 2.0 * std::numbers::pi + 0.1; });
   if (5 * beyond < std::ssize(sizes)) return;
-  checked.angle_unit = kDegree;
+  checked.angle_unit = geometry::kDegree;
   checked.add(
       "sightings.csv", "bearing", "angle unit",
-      joined(beyond, " of ", sizes.size(), " bearings are beyond a whole turn in radians (",
-             figure(*std::max_element(sizes.begin(), sizes.end())), "): they look like degrees"),
+      text::joined(beyond, " of ", sizes.size(), " bearings are beyond a whole turn in radians (",
+                   figure(*std::max_element(sizes.begin(), sizes.end())),
+                   "): they look like degrees"),
       "convert them to radians");
 }
 
@@ -230,11 +231,11 @@ TurnAgreement check_views(Checked& checked, const Track& track) {
   const Explained best = best_explanation(checked, pairs, {recorded, WheelMistake::none, stated});
   if (best.error > kShiftFits || best.error > kShiftBetter * recorded) return result;
   const std::string evidence =
-      joined("of ", pairs.size(), " landmarks seen again the wheels lead ",
-             fixed_text(100.0 * recorded, 0), " % of the shift astray (median), and ",
-             fixed_text(100.0 * best.error, 0), " % ");
+      text::joined("of ", pairs.size(), " landmarks seen again the wheels lead ",
+                   text::fixed_text(100.0 * recorded, 0), " % of the shift astray (median), and ",
+                   text::fixed_text(100.0 * best.error, 0), " % ");
   result.sign = say_explanation(checked, best, evidence);
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

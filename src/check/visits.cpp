@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 /// Straight between two rows of truth, the nearest row just outside of them; nothing in gaps.
@@ -88,9 +88,10 @@ UsualMiss usual_miss(const Visits& visits, bool by_truth) {
     if (3 * k <= returns.size() && returns[k].seen) offs.push_back(returns[k].off);
   }
   UsualMiss usual{true, kLeast, 0.0};
-  if (!offs.empty()) usual.off = std::max(kLeast, kTimes * median(std::move(offs)));
-  if (!by_truth) usual.share = std::max(kLeastShare, kTimes * median(std::move(shares)));
+  if (!offs.empty()) usual.off = std::max(kLeast, kTimes * statistics::median(std::move(offs)));
+  if (!by_truth)
+    usual.share = std::max(kLeastShare, kTimes * statistics::median(std::move(shares)));
   return usual;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

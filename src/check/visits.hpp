@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::check {
 
 /// Where one landmark was.
 struct Visit {
@@ -45,4 +45,4 @@ void check_wrong_labels(Checked& checked, const Visits& visits, const UsualMiss&
 /// What is beyond it so far that it is another place.
 inline constexpr double kOtherPlace = 1.5;  // times what is allowed
 
-}  // namespace trussmap
+}  // namespace trussmap::check

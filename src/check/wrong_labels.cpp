@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 struct WrongLabel {
@@ -98,17 +98,17 @@ void check_wrong_labels(Checked& checked, const Visits& visits, const UsualMiss&
   std::string evidence;
   for (std::size_t k = 0; k < std::min(kNamed, wrong.size()); ++k) {
     const WrongLabel& one = wrong[k];
-    evidence +=
-        joined(k == 0 ? "" : ", ", one.read, " at t = ", short_text(one.t), " s (",
-               figure(one.off, "m"), " from where it is otherwise, where ", one.right, " is)");
+    evidence += text::joined(k == 0 ? "" : ", ", one.read, " at t = ", text::short_text(one.t),
+                             " s (", figure(one.off, "m"), " from where it is otherwise, where ",
+                             one.right, " is)");
   }
-  if (wrong.size() > kNamed) evidence += joined(", and ", wrong.size() - kNamed, " more");
+  if (wrong.size() > kNamed) evidence += text::joined(", and ", wrong.size() - kNamed, " more");
   checked.note("sightings.csv", "landmark", "wrong label",
-               joined("at least ", wrong.size(), " of ", all,
-                      wrong.size() == 1 ? " sightings has" : " sightings have",
-                      " another landmark's name: ", evidence),
+               text::joined("at least ", wrong.size(), " of ", all,
+                            wrong.size() == 1 ? " sightings has" : " sightings have",
+                            " another landmark's name: ", evidence),
                "correct the names or take the rows out; fits leave them out by themselves "
                "(--gate)");
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

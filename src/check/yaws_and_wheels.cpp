@@ -18,7 +18,7 @@
 #include <numbers>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::check {
 namespace {
 
 constexpr double kLongestYaws = 600.0;  // s: until then the wheels have not drifted by much
@@ -37,12 +37,13 @@ double unit_of(Checked& checked, const char* file, const char* column, const cha
   const auto beyond = std::count_if(
       sizes.begin(), sizes.end(), [](double size) { return size > 2.0 * std::numbers::pi + 0.1; });
   if (5 * beyond < std::ssize(sizes)) return 1.0;
-  checked.add(
-      file, column, "angle unit",
-      joined(beyond, " of ", sizes.size(), " ", plural, " are beyond a whole turn in radians (",
-             figure(*std::max_element(sizes.begin(), sizes.end())), "): they look like degrees"),
-      "convert them to radians");
-  return kDegree;
+  checked.add(file, column, "angle unit",
+              text::joined(beyond, " of ", sizes.size(), " ", plural,
+                           " are beyond a whole turn in radians (",
+                           figure(*std::max_element(sizes.begin(), sizes.end())),
+                           "): they look like degrees"),
+              "convert them to radians");
+  return geometry::kDegree;
 }
 
 }  // namespace
@@ -74,10 +75,10 @@ int yaws_sign(const Checked& checked, const Track& track) {
     before = &one;
   }
   if (as_recorded.size() < kFewestYaws) return 0;
-  const double right = median(std::move(as_recorded));
-  const double wrong = median(std::move(negated));
+  const double right = statistics::median(std::move(as_recorded));
+  const double wrong = statistics::median(std::move(negated));
   if (right < kYawsAgree && right < wrong) return 1;
   return wrong < kYawsAgree ? -1 : 0;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::check

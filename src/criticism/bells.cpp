@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 std::vector<Shape> bells_over(const Spread& u) {
   std::vector<Shape> bells;
@@ -19,8 +19,8 @@ std::vector<Shape> bells_over(const Spread& u) {
   for (int k = 0; k < 4; ++k) {
     bells.emplace_back(
         "exp(-((" + u.name + "-{centre})/{width})^2)",
-        std::vector<ShapeParameter>{{"centre", rounded_within(low + k * width, width)},
-                                    {"width", rounded_within(width, width)}});
+        std::vector<ShapeParameter>{{"centre", text::rounded_within(low + k * width, width)},
+                                    {"width", text::rounded_within(width, width)}});
   }
   return bells;
 }
@@ -43,12 +43,13 @@ std::vector<Shape> bells_over(const Area& area) {
                       [&](const Vector2& one) { return (one - centre).norm() < kNear * apart; });
       if (!driven) continue;
       bells.emplace_back(
-          kBellPattern, std::vector<ShapeParameter>{{"x", rounded_within(centre.x(), apart)},
-                                                    {"y", rounded_within(centre.y(), apart)},
-                                                    {"r", rounded_within(kSpread * apart, apart)}});
+          effects::kBellPattern,
+          std::vector<ShapeParameter>{{"x", text::rounded_within(centre.x(), apart)},
+                                      {"y", text::rounded_within(centre.y(), apart)},
+                                      {"r", text::rounded_within(kSpread * apart, apart)}});
     }
   }
   return bells;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// Four over nearly all values of a variable; none where these are all but the same.
 [[nodiscard]] std::vector<Shape> bells_over(const Spread& u);
@@ -17,4 +17,4 @@ namespace trussmap {
 /// All over the floor that was driven on, five along its longer side; none where there is none.
 [[nodiscard]] std::vector<Shape> bells_over(const Area& area);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kMaskedLevel = 0.2;  // of the level
@@ -24,7 +24,7 @@ double log_sets_of(double tried, int size) {
 }
 
 double p_of_set(double gain, int dof, int tried, int size) {
-  return std::min(1.0, chi2_p_value(gain, dof) * std::exp(log_sets_of(tried, size)));
+  return std::min(1.0, statistics::chi2_p_value(gain, dof) * std::exp(log_sets_of(tried, size)));
 }
 
 std::vector<std::size_t> tested_in(const CandidateSet& set, const CandidateGram& gram) {
@@ -56,7 +56,7 @@ bool each_is_there(const CandidateSet& set, const WeighedSets& weighed,
     if (!search.weigh(others)) return false;
     const double own = set.gain - others.gain;
     const auto dof = static_cast<int>(weighed.gram.blocks[idx(set.members[idx(m)])].size);
-    const double p = chi2_p_value(own / weighed.dispersion, dof) * ground.tried;
+    const double p = statistics::chi2_p_value(own / weighed.dispersion, dof) * ground.tried;
     if (p >= ground.next_level || own < ground.next_share * others.gain) return false;
   }
   return true;
@@ -70,10 +70,11 @@ double dispersion_of_set(const std::vector<std::size_t>& places, const std::vect
   joint.p_value = 0.0;
   joint.projected.resize(ground.tests.residuals().size(), 0);
   for (const std::size_t k : places) {
-    append_columns(joint.projected,
-                   ground.tests.test({tested[k].candidate.effect}).front().projected);
+    linalg::append_columns(joint.projected,
+                           ground.tests.test({tested[k].candidate.effect}).front().projected);
   }
-  const Eigen::VectorXd estimate = -least_squares(joint.projected, ground.tests.residuals());
+  const Eigen::VectorXd estimate =
+      -linalg::least_squares(joint.projected, ground.tests.residuals());
   joint.coefficients.assign(estimate.begin(), estimate.end());
   joint.columns = joint.projected;
   return dispersion_of(joint, LocalDispersion(ground.fit, ground.tests));
@@ -137,4 +138,4 @@ std::vector<std::size_t> masked_pair(CandidateGram gram, const std::vector<Teste
   return p < level ? tested_in(best, weighed.gram) : std::vector<std::size_t>();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

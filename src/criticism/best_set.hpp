@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 struct MaskedSet {
   std::vector<std::size_t> tested;  ///< places of its effects; empty: there is none
@@ -36,4 +36,4 @@ struct MaskedSet {
                                                    const std::vector<Tested>& tested,
                                                    const SetGround& ground, double level);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -15,7 +15,7 @@
 #include <optional>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kFarPlace = 0.3;   // m off: no handbreadth
@@ -59,7 +59,7 @@ std::map<Channel, double> places_off(const WheelCalibration& found, const Robot&
     if (value) result[channel] = sign * (value->value - was);
   };
   for (const CalibratedMounting& one : found.mountings) {
-    const Mounting was = stated_place(stated.mounted, one.of);
+    const Mounting was = calibration::stated_place(stated.mounted, one.of);
     if (one.of == "antenna") {
       add(one.x, was.x, Channel::antenna);
       add(one.y, was.y, Channel::antenna_left);
@@ -100,7 +100,7 @@ void keep_likely(const std::optional<WheelCalibration>& found, const Robot& stat
   const auto has = [&found](Channel one) {
     return found && std::ranges::count(found->channels, one) > 0;
   };
-  std::vector<Channel> unlikely = seldom_constants(stated);
+  std::vector<Channel> unlikely = calibration::seldom_constants(stated);
   std::erase_if(unlikely, has);
   if (has(Channel::wheel_left) || has(Channel::steer_left)) {
     for (const Channel one : {Channel::lever_left, Channel::antenna_left, Channel::scanner_left}) {
@@ -116,7 +116,8 @@ void keep_likely(const std::optional<WheelCalibration>& found, const Robot& stat
 std::map<Channel, double> steering_of(const Model& calibrated) {
   std::map<Channel, double> result;
   for (const Effect& one : calibrated.effects) {
-    if (is_of_steered_drive(one.channel) && one.is_constant() && !one.coefficients.empty()) {
+    if (effects::is_of_steered_drive(one.channel) && one.is_constant() &&
+        !one.coefficients.empty()) {
       result[one.channel] += one.coefficients.front();
     }
   }
@@ -140,7 +141,7 @@ bool is_far_place(Channel channel, double g) {
   const bool place = channel == lever || channel == lever_left || channel == antenna ||
                      channel == antenna_left || channel == scanner || channel == scanner_left;
   return (place && std::abs(g) >= kFarPlace) || (turned && std::abs(g) >= kFarYaw) ||
-         (is_wheels_place(channel) && std::abs(g) >= kFarWheel) ||
+         (effects::is_wheels_place(channel) && std::abs(g) >= kFarWheel) ||
          (channel == steer && std::abs(g) >= kFarAngle) ||
          (channel == steer_gain && std::abs(g) >= kGross) ||
          (channel == other_axle && std::abs(g) >= kHalf);
@@ -148,11 +149,11 @@ bool is_far_place(Channel channel, double g) {
 
 CalibratedStart start_of_constants(const std::vector<DrivenRecording>& recordings,
                                    const ModelFit& given, std::vector<Effect> constants) {
-  WheelCalibrationOptions options;
-  options.problem = fitter_options(given.options).problem;
+  calibration::WheelCalibrationOptions options;
+  options.problem = fitting::fitter_options(given.options).problem;
   options.noise = false;
   const auto found = if_possible<WheelCalibration>(
-      [&] { return calibrate_wheels(recordings, given.model, options); });
+      [&] { return calibration::calibrate_wheels(recordings, given.model, options); });
   keep_likely(found, given.model.robot, constants);
   if (!found) return {std::move(constants)};
   const DriveFactors factors = factors_of(found->model);
@@ -174,4 +175,4 @@ CalibratedStart start_of_constants(const std::vector<DrivenRecording>& recording
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 inline constexpr double kGross = 0.05;  ///< of a factor
 
@@ -35,4 +35,4 @@ struct CalibratedStart {
                                                  const ModelFit& given,
                                                  std::vector<Effect> constants);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

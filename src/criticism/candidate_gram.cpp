@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr Eigen::Index kMostNumbers = 25'000'000;  // in columns
@@ -19,8 +19,8 @@ Eigen::MatrixXd orthonormalising(const Eigen::MatrixXd& M) {
   const Eigen::MatrixXd S = M.transpose() * M;
   const Eigen::ArrayXd sd = S.diagonal().array().max(0.0).sqrt();
   const Eigen::ArrayXd scale = (sd > 0.0).select(1.0 / sd, 0.0);
-  const SymmetricModes modes =
-      symmetric_modes(scale.matrix().asDiagonal() * S * scale.matrix().asDiagonal());
+  const linalg::SymmetricModes modes =
+      linalg::symmetric_modes(scale.matrix().asDiagonal() * S * scale.matrix().asDiagonal());
   Eigen::MatrixXd W(M.cols(), M.cols());
   Eigen::Index kept = 0;
   for (Eigen::Index k = 0; k < M.cols(); ++k) {
@@ -68,4 +68,4 @@ CandidateGram GramBuilder::gram(const Eigen::VectorXd& residuals) const {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

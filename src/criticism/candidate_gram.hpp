@@ -19,7 +19,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// A candidate among the columns.
 struct ColumnBlock {
@@ -63,4 +63,4 @@ class GramBuilder {
   Eigen::Index count_ = 0;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

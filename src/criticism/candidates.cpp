@@ -21,7 +21,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kLeastAcceleration = 0.2;  // m/s^2, from braking to speeding up
@@ -60,24 +60,26 @@ struct Measured {
   [[nodiscard]] bool has(std::string_view noise) const { return noises.contains(noise); }
 };
 
-Measured measured_in(const RecordingProblem& problem) {
+Measured measured_in(const estimation::RecordingProblem& problem) {
   const auto any = [&problem](const auto& is) {
     return std::any_of(problem.measurements.begin(), problem.measurements.end(), is);
   };
-  return {noises_in(problem), any(is_position),
-          any([](const Measurement& one) { return is_sighting(one) || gives_pose(one); }),
-          any(is_tie)};
+  return {fitting::noises_in(problem), any(estimation::is_position),
+          any([](const estimation::Measurement& one) {
+            return estimation::is_sighting(one) || estimation::gives_pose(one);
+          }),
+          any(estimation::is_tie)};
 }
 
 bool is_possible(Channel channel, const Measured& measured, const Robot& robot) {
-  if (!is_of_drive(channel, robot)) return false;
+  if (!effects::is_of_drive(channel, robot)) return false;
   if (channel == Channel::compass) return measured.has("compass");
   if (channel == Channel::gyro || channel == Channel::gyro_scale) return measured.has("gyro");
   if (channel == Channel::truth_heading) return measured.has("truth");
-  if (acts_on_fixes(channel)) return measured.fixes;
-  if (acts_on_loops(channel)) return measured.loops;
+  if (effects::acts_on_fixes(channel)) return measured.fixes;
+  if (effects::acts_on_loops(channel)) return measured.loops;
   if (channel == Channel::sighting_yaw) return measured.has("yaw");
-  if (acts_on(channel) == ActsOn::views && !measured.points) return false;
+  if (effects::acts_on(channel) == effects::ActsOn::views && !measured.points) return false;
   if (channel == Channel::bearing) return measured.has("range") || measured.has("bearing");
   if (channel == Channel::range || channel == Channel::range_scale) return measured.has("range");
   return true;
@@ -105,7 +107,7 @@ Candidate plain(Channel channel, const Spread& u, Form form, std::vector<Shape> 
 
 /// What the recordings have, before any candidate is tried.
 struct Grounds {
-  const ShapeContext& context;
+  const fitting::ShapeContext& context;
   Area area;
   Measured measured;
   std::vector<Spread> variables;
@@ -119,7 +121,7 @@ struct Grounds {
   }
 };
 
-Grounds grounds_of(const FitState& fit, const ShapeContext& context) {
+Grounds grounds_of(const fitting::FitState& fit, const fitting::ShapeContext& context) {
   Grounds grounds{context, driven_area(fit), measured_in(fit.problem), {}, {}};
   const auto take = [&](const std::string& name) {
     const Spread spread = spread_of(name, context);
@@ -190,8 +192,8 @@ Candidates of_family(const CatalogueEntry& entry, const Grounds& grounds) {
     found = at_places(one, {0.75, 1.5}, grounds.area);
     // A patch may have no sharp edge, an anomaly may have one.
     Candidate other = one;
-    const bool disc = entry.pattern.front() != kDiscPattern;
-    other.pattern = {disc ? kDiscPattern : kBellPattern};
+    const bool disc = entry.pattern.front() != effects::kDiscPattern;
+    other.pattern = {disc ? effects::kDiscPattern : effects::kBellPattern};
     other.effect.name =
         fmt::format("{} {}", name_of(entry.channel), disc ? "within a circle" : "at a place");
     other.family = other.effect.name;
@@ -210,7 +212,7 @@ Candidates of_family(const CatalogueEntry& entry, const Grounds& grounds) {
 /// A wheel beside the middle before a sensor there, where no motion tells which it is.
 double prior_of(Channel channel) {
   constexpr double kBefore = 0.1;
-  return is_wheels_place(channel) ? kBefore : 0.0;
+  return effects::is_wheels_place(channel) ? kBefore : 0.0;
 }
 
 /// Whether it is of a left and a right wheel that change direction each for itself.
@@ -221,7 +223,7 @@ bool is_of_sides(const CatalogueEntry& entry) {
 
 Candidates of_catalogue(const Grounds& grounds) {
   Candidates found;
-  const bool sides = has_left_and_right(grounds.context.robot());
+  const bool sides = drive::has_left_and_right(grounds.context.robot());
   for (const CatalogueEntry& entry : catalogue()) {
     if (!grounds.allow(entry.channel)) continue;
     if (!sides && is_of_sides(entry)) continue;
@@ -278,7 +280,7 @@ Candidates of_variable(Channel channel, const Spread& u, bool covariate) {
   // A covariate that is far from 0 throughout (a temperature) is taken from its mean.
   const double middle = 0.5 * (u.least + u.most);
   const bool centred = covariate && !u.two_sided() && std::abs(middle) > 1.5 * (u.most - u.least);
-  const double mean = centred ? rounded_within(u.mean, u.most - u.least) : 0.0;
+  const double mean = centred ? text::rounded_within(u.mean, u.most - u.least) : 0.0;
   const std::string v = centred ? filled("(" + n + "-{mean})", {{"mean", mean}}) : n;
   const auto add = [&](Form form, std::vector<Shape> shapes, const std::string& said,
                        double log_prior) {
@@ -321,7 +323,7 @@ Candidates of_place(Channel channel, const Area& area) {
   bell.form = Form::place;
   bell.variable = "place";
   bell.family = bell.effect.name;
-  bell.pattern = {kBellPattern};
+  bell.pattern = {effects::kBellPattern};
   bell.parameters = {{"x", 0.0}, {"y", 0.0}, {"r", 0.0}};
   bell.log_prior = -3.0;
   return at_places(bell, {1.0}, area);
@@ -373,7 +375,7 @@ Candidates of_view_channel(Channel channel, const Grounds& grounds) {
       continue;
     }
     // Clocks know nothing of motion.
-    if (channel == Channel::delay && is_rate(u.name)) continue;
+    if (channel == Channel::delay && recording::is_rate(u.name)) continue;
     found.push_back(plain(channel, u, Form::line, {u.name}, u.name, -2.0));
   }
   if (grounds.context.recordings().size() > 1) {
@@ -407,7 +409,8 @@ Candidates each_once(Candidates all) {
 
 }  // namespace
 
-std::vector<Candidate> candidates_for(const FitState& fit, const ShapeContext& context) {
+std::vector<Candidate> candidates_for(const fitting::FitState& fit,
+                                      const fitting::ShapeContext& context) {
   const Grounds grounds = grounds_of(fit, context);
   Candidates all = of_catalogue(grounds);
   for (const Channel channel :
@@ -428,8 +431,8 @@ std::vector<Candidate> candidates_for(const FitState& fit, const ShapeContext& c
   return each_once(std::move(all));
 }
 
-const CatalogueRecord* record_of(const Candidate& candidate) {
-  return candidate.form == Form::catalogue ? find_record(candidate.effect.name) : nullptr;
+const effects::CatalogueRecord* record_of(const Candidate& candidate) {
+  return candidate.form == Form::catalogue ? effects::find_record(candidate.effect.name) : nullptr;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 enum class Form {
   catalogue,
@@ -69,11 +69,11 @@ struct Candidate {
 
 /// All of them for these recordings. What the recordings cannot have (a compass effect without a
 /// compass) is not among them.
-[[nodiscard]] std::vector<Candidate> candidates_for(const FitState& fit,
-                                                    const ShapeContext& context);
+[[nodiscard]] std::vector<Candidate> candidates_for(const fitting::FitState& fit,
+                                                    const fitting::ShapeContext& context);
 
 /// What the catalogue knows of it; nullptr of a free form.
-[[nodiscard]] const CatalogueRecord* record_of(const Candidate& candidate);
+[[nodiscard]] const effects::CatalogueRecord* record_of(const Candidate& candidate);
 
 /// The same candidate with other parameters, its name and shapes made anew. They are numbers of few
 /// digits: a search cannot tell finer ones apart.
@@ -83,4 +83,4 @@ struct Candidate {
 /// The candidate with parameters near its own that explain the most (itself, where it has none).
 [[nodiscard]] Candidate refined(const ScoreTest& tests, const Candidate& candidate);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

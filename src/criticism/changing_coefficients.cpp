@@ -16,7 +16,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kForms = 2.0;  // tests per effect
@@ -60,7 +60,7 @@ Step largest_step(const CoefficientCourse& about) {
     step.score = score;
     step.at = static_cast<std::size_t>(k);
   }
-  step.p_value = largest_square_p_value(
+  step.p_value = statistics::largest_square_p_value(
       step.score / dispersion(about.chi2 - step.score, about.dof - 1), cosines);
   return step;
 }
@@ -91,7 +91,7 @@ struct Modes {
 
 Modes modes_of(const CoefficientCourse& about) {
   const Eigen::Index n = about.s.size();
-  const SymmetricModes seen = symmetric_modes(about.G);
+  const linalg::SymmetricModes seen = linalg::symmetric_modes(about.G);
   const double least = 1e-9 * std::max(seen.eigenvalues.maxCoeff(), 0.0);
   Eigen::Index first = 0;
   while (first < n && seen.eigenvalues[first] <= least) ++first;
@@ -106,7 +106,7 @@ Modes modes_of(const CoefficientCourse& about) {
     }
   }
   const Eigen::MatrixXd A = root.asDiagonal() * (U.transpose() * W * U) * root.asDiagonal();
-  const SymmetricModes walk = symmetric_modes(A);
+  const linalg::SymmetricModes walk = linalg::symmetric_modes(A);
   Modes modes;
   modes.variances = walk.eigenvalues.cwiseMax(0.0);
   modes.squares =
@@ -138,7 +138,7 @@ Walk likeliest_walk(const CoefficientCourse& about) {
     walk.sizes.push_back({std::sqrt(tau2), gain, phi});
     if (gain > walk.likeliest.gain) walk.likeliest = walk.sizes.back();
   }
-  walk.p_value = quadratic_form_p_value(
+  walk.p_value = statistics::quadratic_form_p_value(
       modes.variances.dot(modes.squares) / walk.likeliest.phi,
       std::vector<double>(modes.variances.data(), modes.variances.data() + modes.variances.size()));
   return walk;
@@ -162,7 +162,7 @@ Deviations deviations(const CoefficientCourse& all, const WalkSize& walk) {
     P(k, k - 1) -= stiff;
     P(k - 1, k) -= stiff;
   }
-  const DenseLdlt factor(P);
+  const linalg::DenseLdlt factor(P);
   return {-factor.solve(all.s) / walk.phi, factor.inverse()};
 }
 
@@ -297,7 +297,7 @@ bool is_left(const CoefficientCourse& about, double level) {
   return kForms * std::min(largest_step(about).p_value, likeliest_walk(about).p_value) < level;
 }
 
-std::vector<std::string> followed(const CoefficientCourse& about, const FitState& fit) {
+std::vector<std::string> followed(const CoefficientCourse& about, const fitting::FitState& fit) {
   constexpr double kLeft = 0.05;
   std::vector<std::pair<double, std::string>> explaining;
   for (auto& [name, means] : variables_over(about, fit)) {
@@ -314,7 +314,7 @@ std::vector<std::string> followed(const CoefficientCourse& about, const FitState
 }
 
 /// Whether its coefficients are the same in all sessions, and fitted.
-bool may_change(const FitState& fit, std::size_t effect) {
+bool may_change(const fitting::FitState& fit, std::size_t effect) {
   const Effect& one = fit.model.effects[effect];
   return one.coefficients.size() == one.shape.size() && effect < fit.effects.size() &&
          fit.effects[effect].not_fitted.empty();
@@ -342,8 +342,8 @@ void tell_course(const CoefficientCourse& all, const Mixture& mixture,
 
 }  // namespace
 
-std::vector<ChangingCoefficient> changing_coefficients(const FitState& fit, const ScoreTest& tests,
-                                                       double level) {
+std::vector<ChangingCoefficient> changing_coefficients(const fitting::FitState& fit,
+                                                       const ScoreTest& tests, double level) {
   std::vector<ChangingCoefficient> result;
   double tried = 0.0;
   for (std::size_t e = 0; e + fit.common_errors < fit.model.effects.size(); ++e) {
@@ -385,4 +385,4 @@ std::vector<ChangingCoefficient> changing_coefficients(const FitState& fit, cons
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

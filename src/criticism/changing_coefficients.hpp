@@ -19,7 +19,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// p below which a change is told: it is asked beside all else.
 inline constexpr double kChangeLevel = 0.01;
@@ -27,8 +27,8 @@ inline constexpr double kChangeLevel = 0.01;
 /// Those of the fit's effects whose coefficients change, the chance of naming any where none does
 /// at most `level`; surest first. Effects with coefficients that differ by session are passed over.
 /// `tests`: of this fit.
-[[nodiscard]] std::vector<ChangingCoefficient> changing_coefficients(const FitState& fit,
+[[nodiscard]] std::vector<ChangingCoefficient> changing_coefficients(const fitting::FitState& fit,
                                                                      const ScoreTest& tests,
                                                                      double level = kChangeLevel);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

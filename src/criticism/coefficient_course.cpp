@@ -12,7 +12,7 @@
 #include <numeric>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr std::size_t kMostParts = 48;
@@ -20,7 +20,7 @@ constexpr std::size_t kRowsPerPart = 2;  // measurements that the effect shows i
 constexpr std::size_t kFewestParts = 6;
 
 /// When a measurement was taken; of a drive its middle.
-double time_of(const RecordingProblem& problem, const Measurement& one) {
+double time_of(const estimation::RecordingProblem& problem, const estimation::Measurement& one) {
   double sum = 0.0;
   int count = 0;
   for (const int node : {one.from, one.to}) {
@@ -39,11 +39,11 @@ struct Shown {
   double energy = 0.0;  ///< of its rows
 };
 
-std::vector<Shown> shown_in(const FitState& fit, const RecordingSystem& system,
+std::vector<Shown> shown_in(const fitting::FitState& fit, const estimation::RecordingSystem& system,
                             const Eigen::VectorXd& column) {
   std::vector<Shown> all;
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
-    const Measurement& one = fit.problem.measurements[k];
+    const estimation::Measurement& one = fit.problem.measurements[k];
     if (one.session < 0) continue;
     const double energy = column.segment(system.first_row(k), one.rows).squaredNorm();
     const double t = time_of(fit.problem, one);
@@ -75,17 +75,19 @@ std::vector<std::size_t> cuts(const std::vector<Shown>& shown) {
 }
 
 /// Columns of the fit's other effects, less what the map absorbs, orthonormal.
-Eigen::MatrixXd others_than(std::size_t effect, const FitState& fit, const ScoreTest& tests) {
+Eigen::MatrixXd others_than(std::size_t effect, const fitting::FitState& fit,
+                            const ScoreTest& tests) {
   constexpr double kSame = 1e-9;  // of the largest pivot
   Eigen::MatrixXd all(tests.residuals().size(), 0);
   for (std::size_t e = 0; e < fit.model.effects.size(); ++e) {
-    if (e != effect) append_columns(all, tests.free_of_map(tests.columns(fit.model.effects[e])));
+    if (e != effect)
+      linalg::append_columns(all, tests.free_of_map(tests.columns(fit.model.effects[e])));
   }
-  return orthonormal_basis(all, kSame);
+  return linalg::orthonormal_basis(all, kSame);
 }
 
 /// Of hours driven until an instant, all sessions before included.
-double hours_at(const FitState& fit, std::size_t session, double t) {
+double hours_at(const fitting::FitState& fit, std::size_t session, double t) {
   double seconds = 0.0;
   for (std::size_t k = 0; k < session; ++k) {
     const std::vector<double>& times = fit.recordings[k].drive.t;
@@ -106,12 +108,12 @@ Eigen::VectorXd column_of(const Effect& effect, const ScoreTest& tests) {
 
 /// Mean of a covariate over each part; nothing where a session lacks it, or it never changes.
 std::optional<Eigen::VectorXd> means_of(const std::string& name, const CoefficientCourse& course,
-                                        const FitState& fit) {
+                                        const fitting::FitState& fit) {
   Eigen::VectorXd means(course.s.size());
   for (std::size_t k = 0; k < course.parts.size(); ++k) {
     const DrivePart& part = course.parts[k];
     const MotionRows& drive = fit.recordings[part.session].drive;
-    const Covariate* found = find_covariate(drive, name);
+    const Covariate* found = drive::find_covariate(drive, name);
     if (found == nullptr) return std::nullopt;
     const auto first = std::lower_bound(drive.t.begin(), drive.t.end(), part.from);
     const auto last = std::max(std::lower_bound(first, drive.t.end(), part.until), first);
@@ -128,7 +130,7 @@ std::optional<Eigen::VectorXd> means_of(const std::string& name, const Coefficie
 
 }  // namespace
 
-std::optional<CoefficientCourse> course_of(std::size_t effect, const FitState& fit,
+std::optional<CoefficientCourse> course_of(std::size_t effect, const fitting::FitState& fit,
                                            const ScoreTest& tests) {
   const Eigen::VectorXd column = column_of(fit.model.effects[effect], tests);
   const std::vector<Shown> shown = shown_in(fit, tests.system(), column);
@@ -183,7 +185,7 @@ CoefficientCourse beside(const Eigen::VectorXd& values, CoefficientCourse course
 }
 
 std::map<std::string, Eigen::VectorXd> variables_over(const CoefficientCourse& course,
-                                                      const FitState& fit) {
+                                                      const fitting::FitState& fit) {
   std::map<std::string, Eigen::VectorXd> result;
   Eigen::VectorXd hours(course.s.size());
   for (std::size_t k = 0; k < course.parts.size(); ++k) {
@@ -196,4 +198,4 @@ std::map<std::string, Eigen::VectorXd> variables_over(const CoefficientCourse& c
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

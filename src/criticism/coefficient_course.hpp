@@ -19,7 +19,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// A while of driving within a session, and when it is on a clock that stands still between
 /// sessions, h.
@@ -41,7 +41,8 @@ struct CoefficientCourse {
 
 /// Of one of the fit's effects: of its coefficient, or of a factor of all where there are several.
 /// Nothing where it shows in too few places.
-[[nodiscard]] std::optional<CoefficientCourse> course_of(std::size_t effect, const FitState& fit,
+[[nodiscard]] std::optional<CoefficientCourse> course_of(std::size_t effect,
+                                                         const fitting::FitState& fit,
                                                          const ScoreTest& tests);
 
 /// The same beside a constant, which the fit has: G 1 = 0.
@@ -53,6 +54,6 @@ struct CoefficientCourse {
 /// Means over the parts: of the hours driven (of a single session, "t"), and of the covariates that
 /// all sessions have.
 [[nodiscard]] std::map<std::string, Eigen::VectorXd> variables_over(const CoefficientCourse& course,
-                                                                    const FitState& fit);
+                                                                    const fitting::FitState& fit);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

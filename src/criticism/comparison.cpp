@@ -13,22 +13,25 @@
 #include <utility>
 
 namespace trussmap {
+using namespace criticism;
+
 namespace {
 
 /// Against the dispersion there is: where everything is off, nothing stands out.
-std::vector<Outlier> find_outliers(const FitState& fit,
-                                   const std::vector<CheckedMeasurement>& checked,
+std::vector<Outlier> find_outliers(const fitting::FitState& fit,
+                                   const std::vector<estimation::CheckedMeasurement>& checked,
                                    double dispersion, double level) {
   std::vector<Outlier> result;
-  for (const OutlierTest& one : outliers(checked, level, dispersion)) {
-    result.push_back({describe(fit.problem, fit.problem.measurements[idx(one.measurement)]),
-                      one.statistic, one.checked, one.p_adjusted});
+  for (const estimation::OutlierTest& one : estimation::outliers(checked, level, dispersion)) {
+    result.push_back(
+        {estimation::describe(fit.problem, fit.problem.measurements[idx(one.measurement)]),
+         one.statistic, one.checked, one.p_adjusted});
   }
   return result;
 }
 
 /// Name of the effect that a diagnosis would name first; empty where it would name none.
-std::string missing_effect(const FitState& fit, const ScoreTest& tests, double level) {
+std::string missing_effect(const fitting::FitState& fit, const ScoreTest& tests, double level) {
   EffectSearch search(fit, tests, {level, 1}, nullptr);
   search.run();
   if (search.missing().empty()) return {};
@@ -37,9 +40,13 @@ std::string missing_effect(const FitState& fit, const ScoreTest& tests, double l
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::criticism {
+
 Comparison compare(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                    const CompareOptions& options, const ScoreTest& tests, KnownOfFit known) {
-  const FitState& state = *fit.state;
+  const fitting::FitState& state = *fit.state;
   Comparison result;
   result.chi2 = fit.chi2;
   result.dof = fit.dof;
@@ -55,7 +62,7 @@ Comparison compare(const std::vector<DrivenRecording>& recordings, const ModelFi
   result.worst_landmarks = std::move(misfits.landmarks);
   result.trends = find_trends(state, tests);
   result.sources = calibrate_sources(state, tests);
-  const std::vector<CheckedMeasurement> checked = snoop(
+  const std::vector<estimation::CheckedMeasurement> checked = estimation::snoop(
       tests.system(), *tests.fitted_rows(), state.problem, state.columns.border, state.adjustment);
   result.residuals = residuals_by_source(state.problem, checked);
   result.outliers = find_outliers(state, checked, tests.dispersion(), options.level);
@@ -77,6 +84,10 @@ Comparison compare(const std::vector<DrivenRecording>& recordings, const ModelFi
   }
   return result;
 }
+
+}  // namespace trussmap::criticism
+
+namespace trussmap {
 
 Comparison compare(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                    const CompareOptions& options) {

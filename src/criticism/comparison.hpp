@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// What need not be found anew.
 struct KnownOfFit {
@@ -25,4 +25,4 @@ struct KnownOfFit {
                                  const ModelFit& fit, const CompareOptions& options,
                                  const ScoreTest& tests, KnownOfFit known = {});
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

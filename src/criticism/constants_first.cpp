@@ -12,7 +12,7 @@
 #include <memory>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 void put_constants_first(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                          GrossConstants constants, const DiagnoseOptions& options,
@@ -27,7 +27,7 @@ void put_constants_first(const std::vector<DrivenRecording>& recordings, const M
   }
   const bool others = result.verdict == Diagnosis::Verdict::missing;
   if (!others) {
-    result.with_missing = metrics_of(result.held_out);
+    result.with_missing = validation::metrics_of(result.held_out);
   }
   result.held_out = predict_held_out(recordings, given, options.legs);
   std::vector<Finding> first = findings_of(recordings, given, constants, options.legs);
@@ -40,7 +40,7 @@ void put_constants_first(const std::vector<DrivenRecording>& recordings, const M
   result.coefficients = given.coefficients;
   result.next_drive.reset();
   if (const LookAlike* rival = closest_rival(first.front().look_alikes)) {
-    result.next_drive = {first.front().effect, rival->effect, slow_covariates(recordings)};
+    result.next_drive = {first.front().effect, rival->effect, drive::slow_covariates(recordings)};
   }
   std::vector<Candidate> candidates;
   for (const Finding& one : first) {
@@ -74,4 +74,4 @@ void put_constants_first(const std::vector<DrivenRecording>& recordings, const M
   run.gross = std::move(constants);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// The constants come first; what else is missing, and the noise, were judged beside them in `run`.
 /// `fit`: of the model given.
@@ -17,4 +17,4 @@ void put_constants_first(const std::vector<DrivenRecording>& recordings, const M
                          GrossConstants constants, const DiagnoseOptions& options,
                          DiagnosisRun& run);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

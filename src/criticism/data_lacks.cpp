@@ -12,7 +12,7 @@
 #include <numbers>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kVaried = 0.15;       // standard deviation over mean
@@ -45,7 +45,7 @@ double spread(const std::vector<double>& values) {
 
 void add(const DrivenRecording& recording, const Robot& robot, Contents& contents) {
   const MotionRows& drive = recording.drive;
-  const std::vector<MotionKind> kinds = motion_kinds(drive, robot);
+  const std::vector<drive::MotionKind> kinds = drive::motion_kinds(drive, robot);
   double heading = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const double begin = row == 0 ? drive.start() : drive.t[row - 1];
@@ -59,24 +59,24 @@ void add(const DrivenRecording& recording, const Robot& robot, Contents& content
     contents.sector_path[std::min<std::size_t>(sector, 7)] += std::abs(path);
     (turn > 0.0 ? contents.left : contents.right) += std::abs(turn);
     switch (kinds[row]) {
-      case MotionKind::standing:
+      case drive::MotionKind::standing:
         contents.standing += duration;
         break;
-      case MotionKind::spinning:
+      case drive::MotionKind::spinning:
         contents.spin_rates.push_back(std::abs(turn) / duration);
         break;
-      case MotionKind::driving:
+      case drive::MotionKind::driving:
         contents.speeds.push_back(std::abs(path) / duration);
         break;
     }
   }
-  const std::vector<Stop> stops = stops_of(recording.sightings);
-  const std::vector<double> driven = driven_path(drive);
-  for (const Leg& leg : legs_of(recording, stops)) {
-    contents.legs.push_back(path_at(drive, driven, stops[leg.to].t) -
-                            path_at(drive, driven, stops[leg.from].t));
+  const std::vector<drive::Stop> stops = drive::stops_of(recording.sightings);
+  const std::vector<double> driven = drive::driven_path(drive);
+  for (const drive::Leg& leg : drive::legs_of(recording, stops)) {
+    contents.legs.push_back(drive::path_at(drive, driven, stops[leg.to].t) -
+                            drive::path_at(drive, driven, stops[leg.from].t));
   }
-  for (const Stop& stop : stops) {
+  for (const drive::Stop& stop : stops) {
     ++contents.visits[recording.sightings[stop.reference].landmark];
   }
 }
@@ -157,4 +157,4 @@ std::vector<DataLack> lacks_of(const std::vector<DrivenRecording>& recordings, c
   return lacks;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -8,10 +8,10 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// The gravest first.
 [[nodiscard]] std::vector<DataLack> lacks_of(const std::vector<DrivenRecording>& recordings,
                                              const Robot& robot, const FitOptions& options);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

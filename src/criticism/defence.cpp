@@ -14,7 +14,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr Eigen::Index kMostSteps = 256;  // of a process
@@ -28,7 +28,7 @@ bool is_of_gyro(Channel channel) {
 bool is_among(const NoiseProcess& process, const Noise& noise) {
   return std::any_of(
       noise.processes.begin(), noise.processes.end(),
-      [&process](const NoiseProcess& other) { return is_same_source(process, other); });
+      [&process](const NoiseProcess& other) { return fitting::is_same_source(process, other); });
 }
 
 bool is_of_catalogue(const Candidate& one) {
@@ -36,9 +36,10 @@ bool is_of_catalogue(const Candidate& one) {
 }
 
 /// A fit as it would be laid out with some of its effects, from `first` on, known to be 0.
-FitState lacking(const FitState& with, std::size_t first, const std::vector<bool>& has) {
-  FitState fit = with;
-  const std::vector<int> unknown = unknown_coefficients(with.columns.border);
+fitting::FitState lacking(const fitting::FitState& with, std::size_t first,
+                          const std::vector<bool>& has) {
+  fitting::FitState fit = with;
+  const std::vector<int> unknown = estimation::unknown_coefficients(with.columns.border);
   std::vector<double> kept;
   for (std::size_t k = 0; k < unknown.size(); ++k) {
     const std::size_t effect = with.columns.coefficients[idx(unknown[k])].effect;
@@ -100,7 +101,7 @@ class Defence {
   [[nodiscard]] Eigen::MatrixXd together(const std::vector<bool>& wanted) const {
     Eigen::MatrixXd all(tests_.system().rows(), 0);
     for (std::size_t k = 0; k < columns_.size(); ++k) {
-      if (wanted[k]) append_columns(all, columns_[k]);
+      if (wanted[k]) linalg::append_columns(all, columns_[k]);
     }
     return all;
   }
@@ -114,18 +115,18 @@ class Defence {
   [[nodiscard]] std::size_t first() const { return with_.model.effects.size() - effects_.size(); }
 
   [[nodiscard]] FittedNoise noise_with(const std::vector<bool>& wanted) const {
-    const FitState fit = lacking(with_, first(), wanted);
-    NoiseReml reml(fit, options_.stated);
-    return fit_noise(reml, {}, fit_options_);
+    const fitting::FitState fit = lacking(with_, first(), wanted);
+    fitting::NoiseReml reml(fit, options_.stated);
+    return fitting::fit_noise(reml, {}, fit_options_);
   }
 
   /// With the wanted effects' coefficients at their likeliest, and not integrated out.
   [[nodiscard]] double minus_two_log(const std::vector<bool>& wanted, const Noise& noise) const {
-    const FitState fit = lacking(with_, first(), wanted);
-    NoiseReml reml(fit, options_.stated);
-    const double integrated = minus_two_log_under(reml, noise, {});
+    const fitting::FitState fit = lacking(with_, first(), wanted);
+    fitting::NoiseReml reml(fit, options_.stated);
+    const double integrated = fitting::minus_two_log_under(reml, noise, {});
     std::vector<Eigen::Index> own;
-    const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
+    const std::vector<int> unknown = estimation::unknown_coefficients(fit.columns.border);
     for (std::size_t k = 0; k < unknown.size(); ++k) {
       if (fit.columns.coefficients[idx(unknown[k])].effect >= first()) {
         own.push_back(static_cast<Eigen::Index>(k));
@@ -133,7 +134,7 @@ class Defence {
     }
     if (own.empty()) return integrated;
     const Eigen::MatrixXd covariance = reml.system().coefficient_covariance()(own, own);
-    return integrated + DenseLdlt(covariance).log_determinant();
+    return integrated + linalg::DenseLdlt(covariance).log_determinant();
   }
 
   [[nodiscard]] bool stands(std::size_t k) {
@@ -147,8 +148,8 @@ class Defence {
     if (!without || without->noise == noise_) return true;
     if (!with_all_) with_all_ = minus_two_log(std::vector<bool>(effects_.size(), true), noise_);
     const double alone = minus_two_log(others_alone, without->noise);
-    const double p =
-        chi2_p_value(std::max(0.0, alone - *with_all_), static_cast<int>(columns_[k].cols()));
+    const double p = statistics::chi2_p_value(std::max(0.0, alone - *with_all_),
+                                              static_cast<int>(columns_[k].cols()));
     return options_.tried * p < options_.level;
   }
 
@@ -196,7 +197,7 @@ class Defence {
     ScoreTest tests = tests_;
     tests.condition_on(others(k));
     const std::optional<Eigen::MatrixXd> steps =
-        process_columns(fit_, rival, tests.residuals().size(), kMostSteps);
+        fitting::process_columns(fit_, rival, tests.residuals().size(), kMostSteps);
     if (!steps || steps->isZero(0.0)) return std::nullopt;
     std::vector<Eigen::MatrixXd> columns;
     for (const Score& one : tests.test(asked_with(effects_[k]))) {
@@ -211,7 +212,7 @@ class Defence {
     if (p < kShareOfLevel * options_.level) return true;
     rival.sd = std::sqrt(question.likeliest_variance());
     NoiseSource source;
-    source.name = name_of_source(rival);
+    source.name = fitting::name_of_source(rival);
     source.lasts = true;
     source.process = rival;
     source.sd = rival.sd;
@@ -220,8 +221,8 @@ class Defence {
     return false;
   }
 
-  const FitState& fit_;
-  const FitState& with_;
+  const fitting::FitState& fit_;
+  const fitting::FitState& with_;
   const Noise& noise_;
   const std::vector<Effect>& effects_;
   const DefenceOptions& options_;
@@ -254,4 +255,4 @@ Defended defended_against_noise(const std::vector<DrivenRecording>& recordings,
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -21,7 +21,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// Which of these effects, found under `found.fit`'s noise, noise that lasts cannot stand for, each
 /// with the others there. The noise without those that it can stand for comes with it, where there
@@ -43,4 +43,4 @@ struct DefenceOptions {
                                               const std::vector<Effect>& effects,
                                               const DefenceOptions& options);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 /// Takes over those of other fits in place of what is known of the same effects.
@@ -61,4 +61,4 @@ void tell_changes(const ModelFit& stated, const ModelFit& fit, const std::option
   result.objection = Objection::change;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

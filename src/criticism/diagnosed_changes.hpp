@@ -11,7 +11,7 @@
 
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// Of the fit with all that is missing, which explains the recordings on average at least. What is
 /// missing and goes with time may be such a change: then that of the fit without it is told. Noise
@@ -22,4 +22,4 @@ namespace trussmap {
 void tell_changes(const ModelFit& stated, const ModelFit& fit, const std::optional<ModelFit>& with,
                   const ScoreTest& about, Diagnosis& result);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 /// What is missing, as a field would meet it.
@@ -39,7 +39,7 @@ MissingByPlace missing_by_place(const Diagnosis& result) {
   return found;
 }
 
-std::vector<FieldOfPlaces> fields_of(const FitState& fit, const ScoreTest& tests,
+std::vector<FieldOfPlaces> fields_of(const fitting::FitState& fit, const ScoreTest& tests,
                                      const std::vector<Effect>& patches, double level) {
   const auto scores = place_scores(fit, tests, patches);
   return scores ? place_fields(*scores, level) : std::vector<FieldOfPlaces>();
@@ -77,4 +77,4 @@ void tell_places(const std::vector<DrivenRecording>& recordings, const ModelFit&
   result.objection = Objection::place;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// Of the fit with all that is missing but for what goes with the place alone, which such a field
 /// may be. Noise that was estimated may hold a part of a field: whether there is one is asked
@@ -22,4 +22,4 @@ void tell_places(const std::vector<DrivenRecording>& recordings, const ModelFit&
                  const ModelFit& fit, const std::optional<ModelFit>& with, const ScoreTest& about,
                  Diagnosis& result);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -31,6 +31,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace criticism;
+
 namespace {
 
 constexpr double kPractical = 0.05;    // rise of the arrival error
@@ -49,7 +51,7 @@ class Diagnostician {
         options_(options),
         legs_(known.legs && known.of == fit.state
                   ? known.legs
-                  : std::make_shared<const HeldOutLegs>(recordings, fit, options.legs)),
+                  : std::make_shared<const validation::HeldOutLegs>(recordings, fit, options.legs)),
         tests_(state_),
         search_(state_, tests_, {options.level, options.most_missing}, legs_.get()) {}
 
@@ -128,7 +130,8 @@ class Diagnostician {
   }
 
   [[nodiscard]] HeldOutMetrics predicted(const Eigen::VectorXd& moved) const {
-    return moved.size() == 0 ? metrics_of(result_.held_out) : metrics_of(legs_->moved(moved));
+    return moved.size() == 0 ? validation::metrics_of(result_.held_out)
+                             : validation::metrics_of(legs_->moved(moved));
   }
 
   [[nodiscard]] HeldOutMetrics predicted(const Tested& one) const {
@@ -261,8 +264,9 @@ class Diagnostician {
     Eigen::MatrixXd others = tests_.present();
     for (const MissingEffect& other : search_.missing()) {
       if (other.tested == k) continue;
-      append_columns(others, tests_.free_of_map(
-                                 tests_.columns(search_.tested()[other.tested].candidate.effect)));
+      linalg::append_columns(
+          others,
+          tests_.free_of_map(tests_.columns(search_.tested()[other.tested].candidate.effect)));
     }
     return widening(tests_, one.candidate, search_.missing()[rank(k)].joint.coefficients, others);
   }
@@ -275,7 +279,8 @@ class Diagnostician {
       result_.missing = first.effect.name;
       result_.p_value = first.p_adjusted;
       if (const LookAlike* rival = closest_rival(first.look_alikes)) {
-        result_.next_drive = {first.effect, rival->effect, slow_covariates(state_.recordings)};
+        result_.next_drive = {first.effect, rival->effect,
+                              drive::slow_covariates(state_.recordings)};
       }
       return;
     }
@@ -287,10 +292,10 @@ class Diagnostician {
 
   const std::vector<DrivenRecording>& recordings_;
   const ModelFit& fit_;
-  const FitState& state_;
+  const fitting::FitState& state_;
   const DiagnoseOptions& options_;
   /// Before the tests: the largest of what is needed only for a while.
-  std::shared_ptr<const HeldOutLegs> legs_;
+  std::shared_ptr<const validation::HeldOutLegs> legs_;
   ScoreTest tests_;
   EffectSearch search_;
   std::vector<std::vector<LookAlike>> look_alikes_;  ///< of each that is missing
@@ -355,7 +360,7 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
     tell_places(recordings, fit, under->fit, with, about, run.result);
   }
   const Noise& asked_of = options.estimate_noise ? stated : fit.model.noise;
-  FitAnswers answers;
+  fitting::FitAnswers answers;
   bool answered = under->noise.changed();  // the noise is not the model's any more
   if (!missing.empty()) {
     RemainingErrors rest = remaining_errors(recordings, under->fit, with, about, asked_of, missing);
@@ -368,7 +373,7 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
   }
   // What is missing says why the errors are too large.
   answers.misfit = answered && run.result.verdict == Diagnosis::Verdict::missing;
-  run.result.warnings = fit_warnings(*under->fit.state, answers);
+  run.result.warnings = fitting::fit_warnings(*under->fit.state, answers);
   if (options.estimate_noise) {
     object_to_noise(under->noise, run.result);
     run.result.under = std::move(under);
@@ -377,6 +382,10 @@ DiagnosisRun diagnosis_about(const std::vector<DrivenRecording>& recordings, con
 }
 
 }  // namespace
+
+}  // namespace trussmap
+
+namespace trussmap::criticism {
 
 DiagnosisRun run_diagnosis(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                            const Noise& stated, const DiagnoseOptions& options,
@@ -388,6 +397,10 @@ DiagnosisRun run_diagnosis(const std::vector<DrivenRecording>& recordings, const
   }
   return diagnosis_about(recordings, fit, stated, options, known);
 }
+
+}  // namespace trussmap::criticism
+
+namespace trussmap {
 
 Diagnosis diagnose(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                    const DiagnoseOptions& options) {

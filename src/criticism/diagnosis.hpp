@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// What a search has asked of.
 struct SearchedEffects {
@@ -33,8 +33,8 @@ struct DiagnosisRun {
 
 /// Held-out legs that are worked out already, of the fit with this state.
 struct KnownLegs {
-  std::shared_ptr<const FitState> of = nullptr;
-  std::shared_ptr<const HeldOutLegs> legs = nullptr;
+  std::shared_ptr<const fitting::FitState> of = nullptr;
+  std::shared_ptr<const validation::HeldOutLegs> legs = nullptr;
 };
 
 /// `stated`: the noise that the user's model has, which the fit's may differ from by now.
@@ -43,4 +43,4 @@ struct KnownLegs {
                                          const DiagnoseOptions& options,
                                          const KnownLegs& known = {});
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -19,25 +19,27 @@
 #include <utility>
 
 namespace trussmap {
+using namespace criticism;
+
 namespace {
 
 constexpr int kFewestWindows = 20;
 constexpr double kLess = 0.98;  // of the error after 30 s, to be better
 
 /// m; nothing of too few windows.
-std::optional<double> shown(const HorizonError& error) {
+std::optional<double> shown(const validation::HorizonError& error) {
   if (error.windows < kFewestWindows) return std::nullopt;
   return error.rms;
 }
 
 /// The systematic errors that nearly every robot has.
 bool is_common_motion(const Candidate& one) {
-  const CatalogueRecord* record = record_of(one);
+  const effects::CatalogueRecord* record = record_of(one);
   return record != nullptr && record->common_motion;
 }
 
 /// Of dead reckoning: with an effect that explains much, beyond chance only.
-bool reckons_worse(const HorizonChange& change, const Finding& with) {
+bool reckons_worse(const validation::HorizonChange& change, const Finding& with) {
   constexpr double kPlain = 1e-6;  // p
   return change.share > kNoWorse &&
          (with.p_adjusted > kPlain || change.rise_in_sds > kBeyondChance);
@@ -45,9 +47,10 @@ bool reckons_worse(const HorizonChange& change, const Finding& with) {
 
 /// Dead reckoning over the longer horizon with another fit beside the present one, as the other's
 /// path judges both; none where there are too few windows.
-HorizonChange reckoned_change(const ModelFit& present, const ModelFit& other) {
-  const HorizonChange change = horizon_change(*present.state, *other.state, 30.0);
-  return change.windows < kFewestWindows ? HorizonChange{} : change;
+validation::HorizonChange reckoned_change(const ModelFit& present, const ModelFit& other) {
+  const validation::HorizonChange change =
+      validation::horizon_change(*present.state, *other.state, 30.0);
+  return change.windows < kFewestWindows ? validation::HorizonChange{} : change;
 }
 
 void tell_fit(const ModelFit& fit, DiscoveryStep& step) {
@@ -153,7 +156,8 @@ class Discoverer {
       Model model = gross.fit.model;
       model.effects.resize(count);
       try {
-        grown_.add(added, count == all.size() ? gross.fit : refit(recordings_, model, gross.fit));
+        grown_.add(added,
+                   count == all.size() ? gross.fit : fitting::refit(recordings_, model, gross.fit));
       } catch (const SolveError&) {  // lost without those that come next
         together.push_back(all[count - 1]);
         continue;
@@ -164,7 +168,7 @@ class Discoverer {
       step.together = std::exchange(together, {});
       step.predicted_decrease = before - grown_.fit().chi2;
       step.held_out = predict_held_out(recordings_, grown_.fit(), options_.diagnosis.legs);
-      step.predicted = metrics_of(step.held_out);
+      step.predicted = validation::metrics_of(step.held_out);
       tell_reckoning(step);
       step.look_alikes = result_.last.findings[place].look_alikes;
     }
@@ -204,7 +208,7 @@ class Discoverer {
       return false;
     }
     const std::size_t best = best_of(trials, recordings_, options_.diagnosis.legs);
-    const HorizonChange reckoned = reckoned_change(grown_.fit(), trials[best].fit);
+    const validation::HorizonChange reckoned = reckoned_change(grown_.fit(), trials[best].fit);
     const bool worse = predicts_worse(result_.steps.back().held_out, trials[best], recordings_,
                                       options_.diagnosis.legs);
     if ((worse && reckoned.share >= kLess) || reckons_worse(reckoned, winner)) {

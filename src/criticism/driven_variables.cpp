@@ -8,13 +8,13 @@
 #include <algorithm>
 #include <set>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr std::size_t kThinned = 2000;
-using Instant = ShapeContext::Instant;
+using Instant = fitting::ShapeContext::Instant;
 
-bool in_all_sessions(const std::string& name, const ShapeContext& context) {
+bool in_all_sessions(const std::string& name, const fitting::ShapeContext& context) {
   for (std::size_t s = 0; s < context.recordings().size(); ++s) {
     if (!context.variables(s, Instant::middle).contains(name)) return false;
   }
@@ -23,7 +23,7 @@ bool in_all_sessions(const std::string& name, const ShapeContext& context) {
 
 }  // namespace
 
-Spread spread_of(const std::string& name, const ShapeContext& context) {
+Spread spread_of(const std::string& name, const fitting::ShapeContext& context) {
   Spread spread{name, 1e300, -1e300, 0.0, {}, 0};
   std::vector<double> values;
   for (std::size_t s = 0; s < context.recordings().size(); ++s) {
@@ -52,12 +52,12 @@ Spread spread_of(const std::string& name, const ShapeContext& context) {
   return spread;
 }
 
-std::vector<std::string> covariates_of(const ShapeContext& context) {
+std::vector<std::string> covariates_of(const fitting::ShapeContext& context) {
   std::vector<std::string> names;
   for (const Covariate& one : context.recordings().front().drive.covariates) {
-    const auto& reserved = reserved_variables();
+    const auto& reserved = recording::reserved_variables();
     if (std::find(reserved.begin(), reserved.end(), one.name) != reserved.end()) continue;
-    if (is_own_column(context.robot(), one.name)) continue;
+    if (drive::is_own_column(context.robot(), one.name)) continue;
     if (in_all_sessions(one.name, context)) names.push_back(one.name);
   }
   return names;
@@ -72,11 +72,11 @@ bool goes_with_only(const Effect& effect, const std::vector<std::string>& names)
   });
 }
 
-Area driven_area(const FitState& fit) {
+Area driven_area(const fitting::FitState& fit) {
   constexpr int kAcross = 8;
   Area area;
   std::vector<Vector2> places;
-  for (const SessionPath& path : fit.paths) {
+  for (const fitting::SessionPath& path : fit.paths) {
     for (const Pose& pose : path.ends) {
       area.low = area.low.cwiseMin(pose.position());
       area.high = area.high.cwiseMax(pose.position());
@@ -102,4 +102,4 @@ Area driven_area(const FitState& fit) {
   return area;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

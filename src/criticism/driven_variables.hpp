@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// How a variable spreads over the rows of all sessions in which the robot moves.
 struct Spread {
@@ -31,10 +31,10 @@ struct Spread {
 };
 
 /// Of a variable that all sessions have.
-[[nodiscard]] Spread spread_of(const std::string& name, const ShapeContext& context);
+[[nodiscard]] Spread spread_of(const std::string& name, const fitting::ShapeContext& context);
 
 /// Covariates that all sessions have.
-[[nodiscard]] std::vector<std::string> covariates_of(const ShapeContext& context);
+[[nodiscard]] std::vector<std::string> covariates_of(const fitting::ShapeContext& context);
 
 /// Whether an effect is a matter of these variables alone; a constant is a matter of none.
 [[nodiscard]] bool goes_with_only(const Effect& effect, const std::vector<std::string>& names);
@@ -46,6 +46,6 @@ struct Area {
   std::vector<Vector2> centres;  ///< that the robot came near
 };
 
-[[nodiscard]] Area driven_area(const FitState& fit);
+[[nodiscard]] Area driven_area(const fitting::FitState& fit);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 /// The smallest size that would have been seen, as the largest |g| that it makes; 0 where none
@@ -32,11 +32,11 @@ double seen_from(const Finding& finding, ShapeRanges& ranges) {
 }  // namespace
 
 EffectEvidence seen_effect(const EffectEstimate& estimate, std::vector<Effect> rivals,
-                           const FitState& fit, const ScoreTest& tests,
+                           const fitting::FitState& fit, const ScoreTest& tests,
                            const Eigen::VectorXd& rows) {
   const Effect& effect = estimate.effect;
   EffectEvidence one{estimate, {}, range_of(effect, tests.context()), std::move(rivals)};
-  const std::string variable = place_of(effect) ? kPlace : natural_variable(effect);
+  const std::string variable = effects::place_of(effect) ? kPlace : natural_variable(effect);
   if (!variable.empty()) {
     one.response = response_along(variable, effect, fit, tests, one.rivals, rows);
   }
@@ -47,7 +47,8 @@ EffectEvidence seen_effect(const EffectEstimate& estimate, std::vector<Effect> r
   return one;
 }
 
-std::vector<FindingSize> sizes_of(const Diagnosis& diagnosis, const ShapeContext& context) {
+std::vector<FindingSize> sizes_of(const Diagnosis& diagnosis,
+                                  const fitting::ShapeContext& context) {
   ShapeRanges ranges(context);
   std::vector<FindingSize> sizes;
   for (const Finding& one : diagnosis.findings) {
@@ -58,4 +59,4 @@ std::vector<FindingSize> sizes_of(const Diagnosis& diagnosis, const ShapeContext
   return sizes;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

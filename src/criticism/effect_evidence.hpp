@@ -9,17 +9,17 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// What the recordings show of an effect, along its place or its natural variable, with the curves
 /// of these rivals (with coefficients). `tests` are of `fit`, which lacks the effect. `rows`: as
 /// response_along's.
 [[nodiscard]] EffectEvidence seen_effect(const EffectEstimate& estimate, std::vector<Effect> rivals,
-                                         const FitState& fit, const ScoreTest& tests,
+                                         const fitting::FitState& fit, const ScoreTest& tests,
                                          const Eigen::VectorXd& rows = {});
 
 /// One per finding.
 [[nodiscard]] std::vector<FindingSize> sizes_of(const Diagnosis& diagnosis,
-                                                const ShapeContext& context);
+                                                const fitting::ShapeContext& context);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr Eigen::Index kDraws = 4000;
@@ -41,7 +41,7 @@ Eigen::MatrixXd normals(Eigen::Index rows, Eigen::Index columns, std::mt19937_64
 
 EffectOrProcess::EffectOrProcess(const Eigen::VectorXd& y, const Eigen::MatrixXd& Z,
                                  const std::vector<Eigen::MatrixXd>& effects) {
-  const SymmetricModes modes = symmetric_modes(Z.transpose() * Z);
+  const linalg::SymmetricModes modes = linalg::symmetric_modes(Z.transpose() * Z);
   const double largest = modes.eigenvalues[modes.eigenvalues.size() - 1];
   Eigen::Index none = 0;
   while (modes.eigenvalues[none] <= kLeastMode * largest) ++none;
@@ -56,12 +56,12 @@ EffectOrProcess::EffectOrProcess(const Eigen::VectorXd& y, const Eigen::MatrixXd
   Eigen::MatrixXd Q(y.size(), 0);
   for (const Eigen::MatrixXd& one : effects) {
     first_.push_back(Q.cols());
-    append_columns(Q, orthonormal_basis(one));
+    linalg::append_columns(Q, linalg::orthonormal_basis(one));
   }
   first_.push_back(Q.cols());
   Q_modes_ = U.transpose() * Q;
-  const SymmetricModes outside =
-      symmetric_modes(Q.transpose() * Q - Q_modes_.transpose() * Q_modes_);
+  const linalg::SymmetricModes outside =
+      linalg::symmetric_modes(Q.transpose() * Q - Q_modes_.transpose() * Q_modes_);
   Q_outside_ = outside.eigenvectors * outside.eigenvalues.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   y_modes_ = U.transpose() * y;
   y_effects_ = Q.transpose() * y;
@@ -120,4 +120,4 @@ double EffectOrProcess::chance_of_process(std::size_t effect) const {
   return static_cast<double>(reached + 1) / static_cast<double>(kDraws + 1);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

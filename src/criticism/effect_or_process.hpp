@@ -26,7 +26,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 class EffectOrProcess {
  public:
@@ -64,4 +64,4 @@ class EffectOrProcess {
   Eigen::VectorXd y_effects_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

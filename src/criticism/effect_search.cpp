@@ -12,7 +12,7 @@
 #include <numeric>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kSecondLevel = 0.02;   // of the level
@@ -26,8 +26,8 @@ constexpr std::size_t kMostEvents = 8;
 
 }  // namespace
 
-EffectSearch::EffectSearch(const FitState& fit, const ScoreTest& tests,
-                           const SearchOptions& options, const HeldOutLegs* legs)
+EffectSearch::EffectSearch(const fitting::FitState& fit, const ScoreTest& tests,
+                           const SearchOptions& options, const validation::HeldOutLegs* legs)
     : fit_(fit),
       tests_(tests),
       options_(options),
@@ -132,7 +132,7 @@ const NoiseTest* leading_law(const std::vector<NoiseTest>& laws, const std::vect
 
 /// The likeliest event, if it has a better claim than any effect. A whole session that is out of
 /// line is not among them: what goes with a session's load is an effect.
-std::optional<TestedEvent> EffectSearch::claiming_event(const FitState& ground,
+std::optional<TestedEvent> EffectSearch::claiming_event(const fitting::FitState& ground,
                                                         const ScoreTest& left,
                                                         const std::vector<Tested>& still,
                                                         const Eigen::MatrixXd& nuisance) const {
@@ -149,7 +149,7 @@ std::optional<TestedEvent> EffectSearch::claiming_event(const FitState& ground,
 
 /// Laws of noise and single events that have a better claim than any effect come before them.
 /// `still`: the effects, asked of what is left.
-void EffectSearch::weigh_noise_and_events(ScoreTest& left, const FitState& ground,
+void EffectSearch::weigh_noise_and_events(ScoreTest& left, const fitting::FitState& ground,
                                           std::vector<Tested>& still) {
   const auto significant = [this](const Tested& one) {
     return one.score.dof > 0 && one.p_adjusted < options_.level;
@@ -163,7 +163,7 @@ void EffectSearch::weigh_noise_and_events(ScoreTest& left, const FitState& groun
     const std::optional<TestedEvent> event = claiming_event(ground, left, still, events_);
     if (!event) return;
     left.condition_on(event->projected);
-    append_columns(events_, event->projected);
+    linalg::append_columns(events_, event->projected);
     dof -= event->dof;
     std::vector<double> p_before;
     p_before.reserve(still.size());
@@ -181,9 +181,9 @@ void EffectSearch::find_missing() {
   if (best_of(tested_, options_.level) == nullptr) return take_masked();
   const std::vector<NoiseTest> laws = test_noise_laws(fit_, tests_);
   const NoiseTest* law = leading_law(laws, tested_, options_.level);
-  const std::optional<FitState> noisier =
+  const std::optional<fitting::FitState> noisier =
       law != nullptr ? std::optional(with_noise(fit_, tests_, *law)) : std::nullopt;
-  const FitState& ground = noisier ? *noisier : fit_;
+  const fitting::FitState& ground = noisier ? *noisier : fit_;
   ScoreTest left = noisier ? ScoreTest(ground) : tests_;
   std::vector<Tested> still = tested_;
   weigh_noise_and_events(left, ground, still);
@@ -212,7 +212,8 @@ void EffectSearch::take_formula(const Tested& formula, std::vector<Tested>& stil
 }
 
 /// The best, then the best of what is left when conditioned on it, and so on.
-void EffectSearch::select(ScoreTest& left, const FitState& ground, std::vector<Tested>& still) {
+void EffectSearch::select(ScoreTest& left, const fitting::FitState& ground,
+                          std::vector<Tested>& still) {
   int dof = fit_.adjustment.dof;
   const double at_first = left.residuals().squaredNorm();
   const FormulaGrammar grammar(ground, left.context());
@@ -231,7 +232,7 @@ void EffectSearch::select(ScoreTest& left, const FitState& ground, std::vector<T
     missing_.push_back({at, {}});
     const Score whole = tests_.test({tested_[at].candidate.effect}).front();
     left.condition_on(left.columns(tested_[at].candidate.effect));
-    append_columns(nuisance_, whole.projected);
+    linalg::append_columns(nuisance_, whole.projected);
     dof -= whole.dof;
     if (missing_.size() == options_.most_missing) break;
     test_again(ground, left, still);
@@ -246,7 +247,7 @@ std::vector<std::size_t> EffectSearch::missing_places() const {
   return places;
 }
 
-SearchGround EffectSearch::ground_of(const FitState& fit, const ScoreTest& left,
+SearchGround EffectSearch::ground_of(const fitting::FitState& fit, const ScoreTest& left,
                                      double next_share) const {
   return {fit,
           left,
@@ -259,7 +260,7 @@ SearchGround EffectSearch::ground_of(const FitState& fit, const ScoreTest& left,
 }
 
 /// Known effects come in the place of a free form that they explain together.
-void EffectSearch::take_known_causes(const FitState& ground, const ScoreTest& left) {
+void EffectSearch::take_known_causes(const fitting::FitState& ground, const ScoreTest& left) {
   const std::vector<KnownCause> causes =
       known_causes_of(missing_places(), tested_, ground_of(ground, left, kSecondShare));
   if (causes.empty()) return;
@@ -268,7 +269,7 @@ void EffectSearch::take_known_causes(const FitState& ground, const ScoreTest& le
   for (const KnownCause& one : causes) {
     Tested& tested = tested_[one.tested];
     Score score = tests_.test({one.candidate.effect}).front();
-    append_columns(nuisance_, score.projected);
+    linalg::append_columns(nuisance_, score.projected);
     if (one.candidate.parameters != tested.candidate.parameters) {
       take(tested, one.candidate, score);
     }
@@ -280,13 +281,14 @@ void EffectSearch::take_all(const std::vector<std::size_t>& places) {
   missing_.clear();
   nuisance_.resize(nuisance_.rows(), 0);
   for (const std::size_t one : places) {
-    append_columns(nuisance_, tests_.test({tested_[one].candidate.effect}).front().projected);
+    linalg::append_columns(nuisance_,
+                           tests_.test({tested_[one].candidate.effect}).front().projected);
     missing_.push_back({one, {}});
   }
 }
 
 /// Among all that was tested, formulas that were taken included.
-void EffectSearch::take_best_set(const FitState& ground, const ScoreTest& left) {
+void EffectSearch::take_best_set(const fitting::FitState& ground, const ScoreTest& left) {
   if (missing_.empty()) return;
   SearchGround beside_events = ground_of(ground, left, kOutByLarge);
   beside_events.dof -= static_cast<int>(events_.cols());
@@ -297,7 +299,7 @@ void EffectSearch::take_best_set(const FitState& ground, const ScoreTest& left) 
 /// Nothing is significant by itself. What hides much leaves a chi^2 that is hardly small.
 void EffectSearch::take_masked() {
   constexpr double kHides = 0.2;  // p
-  if (chi2_p_value(fit_.adjustment.chi2, fit_.adjustment.dof) > kHides) return;
+  if (statistics::chi2_p_value(fit_.adjustment.chi2, fit_.adjustment.dof) > kHides) return;
   const MaskedSet masked = masked_set(tested_, ground_of(fit_, tests_, kSecondShare));
   if (masked.tested.empty()) return;
   take_all(masked.tested);
@@ -343,4 +345,4 @@ void EffectSearch::eliminate_backward() {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

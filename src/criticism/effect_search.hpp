@@ -26,7 +26,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 struct SearchOptions {
   double level = kSignificance;  ///< of the first; the next have to be far more significant
@@ -47,8 +47,8 @@ struct MissingEffect {
 class EffectSearch {
  public:
   /// Keeps references. `legs`, which may be nullptr: whose slopes the tests are to have.
-  EffectSearch(const FitState& fit, const ScoreTest& tests, const SearchOptions& options,
-               const HeldOutLegs* legs);
+  EffectSearch(const fitting::FitState& fit, const ScoreTest& tests, const SearchOptions& options,
+               const validation::HeldOutLegs* legs);
 
   void run();
 
@@ -73,28 +73,30 @@ class EffectSearch {
   void refine_families();
   void refine(Tested& tested);
   void find_missing();
-  void select(ScoreTest& left, const FitState& ground, std::vector<Tested>& still);
+  void select(ScoreTest& left, const fitting::FitState& ground, std::vector<Tested>& still);
   void take_formula(const Tested& formula, std::vector<Tested>& still);
   /// Places of what is missing.
   [[nodiscard]] std::vector<std::size_t> missing_places() const;
-  [[nodiscard]] SearchGround ground_of(const FitState& fit, const ScoreTest& left,
+  [[nodiscard]] SearchGround ground_of(const fitting::FitState& fit, const ScoreTest& left,
                                        double next_share) const;
-  void take_known_causes(const FitState& ground, const ScoreTest& left);
-  void take_best_set(const FitState& ground, const ScoreTest& left);
+  void take_known_causes(const fitting::FitState& ground, const ScoreTest& left);
+  void take_best_set(const fitting::FitState& ground, const ScoreTest& left);
   void take_masked();
   void take_all(const std::vector<std::size_t>& places);
-  void weigh_noise_and_events(ScoreTest& left, const FitState& ground, std::vector<Tested>& still);
-  [[nodiscard]] std::optional<TestedEvent> claiming_event(const FitState& ground,
+  void weigh_noise_and_events(ScoreTest& left, const fitting::FitState& ground,
+                              std::vector<Tested>& still);
+  [[nodiscard]] std::optional<TestedEvent> claiming_event(const fitting::FitState& ground,
                                                           const ScoreTest& left,
                                                           const std::vector<Tested>& still,
                                                           const Eigen::MatrixXd& nuisance) const;
   void estimate_jointly();
   void eliminate_backward();
 
-  const FitState& fit_;
+  const fitting::FitState& fit_;
   const ScoreTest& tests_;
   SearchOptions options_;
-  const HeldOutLegs* legs_;  ///< nullptr: whose slopes nobody wants, or that cannot have any
+  const validation::HeldOutLegs*
+      legs_;  ///< nullptr: whose slopes nobody wants, or that cannot have any
   LocalDispersion dispersion_;
   int tried_ = 0;
   std::vector<Tested> tested_;
@@ -104,4 +106,4 @@ class EffectSearch {
   bool only_together_ = false;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -8,21 +8,21 @@
 #include <algorithm>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 double wald(const ModelFit& of, std::size_t effect) {
-  const FitState& fit = *of.state;
-  const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
+  const fitting::FitState& fit = *of.state;
+  const std::vector<int> unknown = estimation::unknown_coefficients(fit.columns.border);
   std::vector<Eigen::Index> places;
   for (std::size_t k = 0; k < unknown.size(); ++k) {
-    const Coefficient& one = fit.columns.coefficients[idx(unknown[k])];
+    const fitting::Coefficient& one = fit.columns.coefficients[idx(unknown[k])];
     if (one.effect == effect) places.push_back(static_cast<Eigen::Index>(k));
   }
   if (places.empty()) return 0.0;
   const Eigen::MatrixXd C = fit.adjustment.coefficient_covariance(places, places);
   const Eigen::VectorXd a = fit.adjustment.coefficients(places);
   const double scatter = std::min(1.0, of.chi2 / std::max(1, of.dof));
-  return a.dot(DenseLdlt(C).solve(a)) / scatter;
+  return a.dot(linalg::DenseLdlt(C).solve(a)) / scatter;
 }
 
 double chi2_of_all(const ModelFit& fit) {
@@ -37,4 +37,4 @@ bool does_as_well(const ModelFit& with_fewer, const ModelFit& fit) {
   return chi2_of_all(with_fewer) - chi2_of_all(fit) < kWorthKeeping * scatter_left(fit);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

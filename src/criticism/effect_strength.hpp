@@ -8,7 +8,7 @@
 
 #include <cstddef>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// Wald statistic per coefficient, by the scatter that there is, that keeps an effect: p = 0.0001.
 inline constexpr double kWorthKeeping = 15.0;
@@ -26,4 +26,4 @@ inline constexpr double kWorthKeeping = 15.0;
 /// Whether a fit with fewer constants is hardly worse.
 [[nodiscard]] bool does_as_well(const ModelFit& with_fewer, const ModelFit& fit);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr std::size_t kMostRivals = 4;
@@ -22,7 +22,7 @@ double arrival_of(Trial& trial, const std::vector<DrivenRecording>& recordings,
                   const LegOptions& legs) {
   if (!trial.held_out) {
     try {
-      trial.legs = std::make_shared<const HeldOutLegs>(recordings, trial.fit, legs);
+      trial.legs = std::make_shared<const validation::HeldOutLegs>(recordings, trial.fit, legs);
       trial.held_out = trial.legs->metrics();
     } catch (const SolveError&) {  // what is left without those legs does not tell the effect
       trial.held_out = HeldOut{};
@@ -75,7 +75,7 @@ bool predicts_worse(const HeldOut& before, Trial& trial,
   if (!(before.arrival_rms > 0.0)) return false;
   const double arrival = arrival_of(trial, recordings, legs);
   if (arrival <= kNoWorse * before.arrival_rms) return false;
-  return std::isinf(arrival) || rise_in_sds(before, *trial.held_out) > kBeyondChance;
+  return std::isinf(arrival) || validation::rise_in_sds(before, *trial.held_out) > kBeyondChance;
 }
 
 std::size_t best_of(std::vector<Trial>& trials, const std::vector<DrivenRecording>& recordings,
@@ -98,4 +98,4 @@ std::size_t best_of(std::vector<Trial>& trials, const std::vector<DrivenRecordin
   return best;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

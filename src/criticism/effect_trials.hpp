@@ -17,7 +17,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 inline constexpr double kDecisive = 6.0;      ///< of chi^2
 inline constexpr double kNoWorse = 1.05;      ///< of the error before
@@ -28,7 +28,7 @@ struct Trial {
   Candidate candidate;
   ModelFit fit;
   std::optional<HeldOut> held_out = std::nullopt;  ///< once asked for; no legs where untold
-  std::shared_ptr<const HeldOutLegs> legs = nullptr;
+  std::shared_ptr<const validation::HeldOutLegs> legs = nullptr;
 };
 
 /// The winner and those of its look-alikes that explain nearly as much, by their place among the
@@ -53,4 +53,4 @@ struct Trial {
                                   const std::vector<DrivenRecording>& recordings,
                                   const LegOptions& legs);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <map>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kUnchecked = 1e-6;
@@ -34,14 +34,15 @@ double effective_tries(const Eigen::MatrixXd& S, Eigen::Index width) {
       }
     }
   }
-  const SymmetricModes axes = symmetric_modes(overlap);
+  const linalg::SymmetricModes axes = linalg::symmetric_modes(overlap);
   const Eigen::ArrayXd l = axes.eigenvalues.array().max(0.0);
   return l.sum() > 0.0 ? std::pow(l.sqrt().sum(), 2) / l.sum() : 1.0;
 }
 
 class Scorer {
  public:
-  Scorer(const FitState& fit, const RecordingSystem& system, const FitProjection& P)
+  Scorer(const fitting::FitState& fit, const estimation::RecordingSystem& system,
+         const fitting::FitProjection& P)
       : fit_(fit), system_(system), P_(P), r_(P.times(system.residuals())) {}
 
   /// Solves are shared by events that need some.
@@ -60,9 +61,10 @@ class Scorer {
       batches.back().columns +=
           static_cast<Eigen::Index>(events[e].places.size()) * width(events[e]);
     }
-    parallel_for(local.size(),
-                 [&](std::size_t k) { result[local[k]] = score_locally(events[local[k]]); });
-    parallel_for(batches.size(), [&](std::size_t k) { solve(events, batches[k], result); });
+    parallel::parallel_for(
+        local.size(), [&](std::size_t k) { result[local[k]] = score_locally(events[local[k]]); });
+    parallel::parallel_for(batches.size(),
+                           [&](std::size_t k) { solve(events, batches[k], result); });
     return result;
   }
 
@@ -105,7 +107,7 @@ class Scorer {
   void solve(const std::vector<SingleEvent>& events, const Batch& batch,
              std::vector<Scored>& result) const {
     const Eigen::Index columns = batch.columns;
-    const BlockSystem& normal = system_.normal_equations();
+    const linalg::BlockSystem& normal = system_.normal_equations();
     std::vector<Eigen::Triplet<double>> right;
     Eigen::MatrixXd nuisance = Eigen::MatrixXd::Zero(P_.set_aside().cols(), columns);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(columns);
@@ -118,7 +120,7 @@ class Scorer {
           const std::size_t k = part.measurement;
           const Eigen::MatrixXd& M = part.rows;
           const int first = system_.first_row(k);
-          for (const RecordingSystem::NodeRows& link : system_.node_rows(k)) {
+          for (const estimation::RecordingSystem::NodeRows& link : system_.node_rows(k)) {
             const Eigen::MatrixXd block = link.rows.transpose() * M;
             for (Eigen::Index c = 0; c < block.cols(); ++c) {
               for (Eigen::Index r = 0; r < block.rows(); ++r) {
@@ -186,9 +188,11 @@ class Scorer {
     result.size = Eigen::VectorXd::Zero(g.size());
     std::vector<Eigen::Index> seen;
     for (Eigen::Index k = 0; k < g.size(); ++k) {
-      bool counts = S(k, k) > (prior ? kLeastShare : kUnchecked) * whole[k] && S(k, k) > 0.0;
+      bool counts =
+          S(k, k) > (prior ? fitting::kLeastShare : kUnchecked) * whole[k] && S(k, k) > 0.0;
       if (prior) {
-        counts = counts && std::sqrt(dispersion / S(k, k)) < kLargestUncertainty * prior_sd[k];
+        counts =
+            counts && std::sqrt(dispersion / S(k, k)) < fitting::kLargestUncertainty * prior_sd[k];
       }
       if (counts) seen.push_back(k);
     }
@@ -199,7 +203,7 @@ class Scorer {
       const Eigen::VectorXd sds = prior_sd(seen);
       scaled.diagonal() += dispersion * scale.cwiseAbs2().cwiseQuotient(sds.cwiseAbs2());
     }
-    const SymmetricModes axes = symmetric_modes(scaled);
+    const linalg::SymmetricModes axes = linalg::symmetric_modes(scaled);
     const Eigen::VectorXd along = axes.eigenvectors.transpose() * scale.cwiseProduct(g(seen));
     Eigen::VectorXd size = Eigen::VectorXd::Zero(along.size());
     for (Eigen::Index k = 0; k < along.size(); ++k) {
@@ -210,22 +214,23 @@ class Scorer {
     }
     result.size(seen) = scale.cwiseProduct(size);
     const double left = dof > result.dof ? (chi2 - result.score) / (dof - result.dof) : 1.0;
-    result.log_p = log_chi2_p_value(result.score / std::max(1.0, left), result.dof);
+    result.log_p = statistics::log_chi2_p_value(result.score / std::max(1.0, left), result.dof);
     return result;
   }
 
-  const FitState& fit_;
-  const RecordingSystem& system_;
-  const FitProjection& P_;
+  const fitting::FitState& fit_;
+  const estimation::RecordingSystem& system_;
+  const fitting::FitProjection& P_;
   Eigen::VectorXd r_;
 };
 
 }  // namespace
 
-std::vector<Scored> score_events(const FitState& fit, const RecordingSystem& system,
-                                 const FitProjection& projection,
+std::vector<Scored> score_events(const fitting::FitState& fit,
+                                 const estimation::RecordingSystem& system,
+                                 const fitting::FitProjection& projection,
                                  const std::vector<SingleEvent>& events) {
   return Scorer(fit, system, projection).score(events);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// What a place explains, against the dispersion that it leaves.
 struct Found {
@@ -26,8 +26,9 @@ struct Scored {
 };
 
 /// One per event. `projection` is that of the fit itself.
-[[nodiscard]] std::vector<Scored> score_events(const FitState& fit, const RecordingSystem& system,
-                                               const FitProjection& projection,
+[[nodiscard]] std::vector<Scored> score_events(const fitting::FitState& fit,
+                                               const estimation::RecordingSystem& system,
+                                               const fitting::FitProjection& projection,
                                                const std::vector<SingleEvent>& events);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

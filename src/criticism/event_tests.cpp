@@ -15,7 +15,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr std::size_t kMostKept = 64;
@@ -27,32 +27,34 @@ struct Ranked {
 };
 
 /// Sightings that the fit leaves out, against the fit without them.
-void add_left_out(const FitState& fit, const ScoreTest& tests, std::vector<Ranked>& ranked) {
+void add_left_out(const fitting::FitState& fit, const ScoreTest& tests,
+                  std::vector<Ranked>& ranked) {
   if (fit.adjustment.left_out.empty()) return;
-  RecordingSystem whole(fit.problem, fit.columns.border);
+  estimation::RecordingSystem whole(fit.problem, fit.columns.border);
   whole.linearise(fit.adjustment.state, fit.adjustment.coefficients);
-  const std::shared_ptr<const FittedRows> fitted = tests.fitted_rows();
+  const std::shared_ptr<const estimation::FittedRows> fitted = tests.fitted_rows();
   for (const int left_out : fit.adjustment.left_out) {
     const std::size_t k = idx(left_out);
-    const Measurement& one = fit.problem.measurements[k];
+    const estimation::Measurement& one = fit.problem.measurements[k];
     const Eigen::VectorXd r = whole.residuals().segment(whole.first_row(k), one.rows);
     const Eigen::MatrixXd R =
         Eigen::MatrixXd::Identity(one.rows, one.rows) + fitted->covariance(whole, k);
     Ranked event;
-    event.test.kind = is_surveyed_place(one) ? EventKind::landmark : EventKind::sighting;
-    event.test.name = describe(fit.problem, one);
+    event.test.kind =
+        estimation::is_surveyed_place(one) ? EventKind::landmark : EventKind::sighting;
+    event.test.name = estimation::describe(fit.problem, one);
     event.test.change = EventChange::left_out;
     event.test.score = r.dot(R.inverse() * r);
     event.test.dof = one.rows;
     const double dispersion =
         fit.adjustment.dof > 0 ? std::max(1.0, fit.adjustment.chi2 / fit.adjustment.dof) : 1.0;
-    event.log_p = log_chi2_p_value(event.test.score / dispersion, one.rows);
+    event.log_p = statistics::log_chi2_p_value(event.test.score / dispersion, one.rows);
     event.test.measurements = {k};
     ranked.push_back(std::move(event));
   }
 }
 
-Eigen::MatrixXd dense(const Dummies& dummies, const RecordingSystem& system) {
+Eigen::MatrixXd dense(const Dummies& dummies, const estimation::RecordingSystem& system) {
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(system.rows(), dummies.parts.front().rows.cols());
   for (const auto& [k, rows] : dummies.parts) {
     M.middleRows(system.first_row(k), rows.rows()) = rows;
@@ -71,11 +73,11 @@ std::vector<double> size_of(const Found& found, EventChange change) {
 
 }  // namespace
 
-std::vector<TestedEvent> test_events(const FitState& fit, const ScoreTest& tests,
+std::vector<TestedEvent> test_events(const fitting::FitState& fit, const ScoreTest& tests,
                                      const Eigen::MatrixXd& nuisance) {
-  const RecordingSystem& system = tests.system();
+  const estimation::RecordingSystem& system = tests.system();
   const Eigen::MatrixXd apart = nuisance.cols() > 0 ? nuisance : Eigen::MatrixXd(system.rows(), 0);
-  const FitProjection P(fit, fit.problem, system, apart, tests.fitted_rows());
+  const fitting::FitProjection P(fit, fit.problem, system, apart, tests.fitted_rows());
   const std::vector<SingleEvent> events = single_events(fit, tests, P);
   const std::vector<Scored> scored = score_events(fit, system, P, events);
   std::vector<Ranked> ranked;
@@ -109,7 +111,7 @@ std::vector<TestedEvent> test_events(const FitState& fit, const ScoreTest& tests
     one.test.p_value = std::exp(one.log_p);
     p_values.push_back(one.test.p_value);
   }
-  const std::vector<double> adjusted = holm(p_values);
+  const std::vector<double> adjusted = statistics::holm(p_values);
   for (std::size_t k = 0; k < ranked.size(); ++k) ranked[k].test.p_adjusted = adjusted[k];
   // Equal to rounding is equal: then the order of the kinds decides.
   const auto key = [](const Ranked& one) { return std::round(1e6 * one.log_p); };
@@ -126,4 +128,4 @@ std::vector<TestedEvent> test_events(const FitState& fit, const ScoreTest& tests
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

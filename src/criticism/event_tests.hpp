@@ -39,7 +39,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 struct TestedEvent : EventTest {
   std::vector<std::size_t> measurements;  ///< whose rows it touches; empty for a session
@@ -48,7 +48,8 @@ struct TestedEvent : EventTest {
 
 /// All events, the likeliest first. `nuisance`: projected columns of effects and events that are
 /// taken as given. At most the first 64 keep their columns.
-[[nodiscard]] std::vector<TestedEvent> test_events(const FitState& fit, const ScoreTest& tests,
+[[nodiscard]] std::vector<TestedEvent> test_events(const fitting::FitState& fit,
+                                                   const ScoreTest& tests,
                                                    const Eigen::MatrixXd& nuisance = {});
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

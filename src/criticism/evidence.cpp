@@ -19,6 +19,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace criticism;
+
 namespace {
 
 constexpr std::size_t kMostRivalsDrawn = 3;
@@ -28,10 +30,10 @@ CompareOptions compare_options(const DiagnoseOptions& options) {
 }
 
 /// Those of 10 s and more that the recordings have enough windows of.
-std::vector<ReckonedError> reckoned_errors(const FitState& fit) {
+std::vector<ReckonedError> reckoned_errors(const fitting::FitState& fit) {
   constexpr int kFewestWindows = 10;
   const std::vector<double> horizons{10.0, 30.0, 100.0, 300.0, 1000.0};
-  const std::vector<HorizonError> errors = horizon_errors(fit, horizons);
+  const std::vector<validation::HorizonError> errors = validation::horizon_errors(fit, horizons);
   std::vector<ReckonedError> reckoned;
   for (std::size_t k = 0; k < horizons.size(); ++k) {
     if (errors[k].windows >= kFewestWindows) reckoned.push_back({horizons[k], errors[k].rms});
@@ -91,17 +93,18 @@ Effect where_largest(const Effect& trend) {
       place = at;
     }
   }
-  const Shape bell(kBellPattern, {{"x", place.x()}, {"y", place.y()}, {"r", bells[0].radius}});
+  const Shape bell(effects::kBellPattern,
+                   {{"x", place.x()}, {"y", place.y()}, {"r", bells[0].radius}});
   return {trend.name, trend.channel, {bell}, {}};
 }
 
-std::vector<TrendEvidence> trend_evidence(const Comparison& comparison, const FitState& fit,
-                                          const ScoreTest& tests) {
+std::vector<TrendEvidence> trend_evidence(const Comparison& comparison,
+                                          const fitting::FitState& fit, const ScoreTest& tests) {
   std::vector<TrendEvidence> evidence;
   std::set<std::string> seen;
   for (const Trend& trend : comparison.trends) {  // strongest first
     const Effect effect = where_largest(trend.effect);
-    const std::string variable = place_of(effect) ? kPlace : natural_variable(effect);
+    const std::string variable = effects::place_of(effect) ? kPlace : natural_variable(effect);
     if (variable.empty() || seen.contains(variable)) continue;
     Response response = response_along(variable, effect, fit, tests);
     if (response.bins.empty()) continue;
@@ -143,7 +146,7 @@ std::optional<std::size_t> place_among(const std::vector<EffectEstimate>& effect
 
 /// Of effects that a fit lacks: by the fit that has them where there is one, else by the one that
 /// lacks them; each with the others there.
-std::vector<EffectEvidence> effect_evidence(const FitState& without, const ModelFit* with,
+std::vector<EffectEvidence> effect_evidence(const fitting::FitState& without, const ModelFit* with,
                                             const std::vector<Seen>& effects) {
   std::vector<EffectEvidence> result;
   std::optional<ScoreTest> there;
@@ -174,7 +177,7 @@ std::optional<ModelFit> fit_with(const std::vector<const Finding*>& missing,
     Model model = fit.model;
     for (std::size_t k = 0; k < count; ++k) model.effects.push_back(missing[k]->effect);
     try {
-      return refit(recordings, model, fit);
+      return fitting::refit(recordings, model, fit);
     } catch (const SolveError&) {
       continue;
     }
@@ -233,7 +236,7 @@ std::vector<ModelEvidence> models_between(const std::vector<DrivenRecording>& re
     std::erase_if(model.effects, [&step](const Effect& one) {
       return std::find(step.dropped.begin(), step.dropped.end(), one.name) != step.dropped.end();
     });
-    const ModelFit fit = refit(recordings, model, discovery.given);
+    const ModelFit fit = fitting::refit(recordings, model, discovery.given);
     models.push_back(model_evidence(recordings, fit, ScoreTest(*fit.state), options,
                                     discovery.steps[k + 1].added->name));
   }
@@ -307,7 +310,7 @@ DiscoveryEvidence evidence_of(const std::vector<DrivenRecording>& recordings,
       model_evidence(recordings, discovery.found, found, compared, discovery.last.missing);
   const std::vector<Seen> added = added_by(discovery);
   evidence.effects = effect_evidence(*discovery.given.state, &discovery.found, added);
-  const std::vector<std::string> slow = slow_covariates(recordings);
+  const std::vector<std::string> slow = drive::slow_covariates(recordings);
   for (const Seen& one : added) {
     evidence.look_alikes.push_back(one.rivals);
     evidence.next_drives.emplace_back();

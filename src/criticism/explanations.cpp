@@ -11,7 +11,7 @@
 #include <map>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kListedBehind = 6.0;   // of log evidence: odds of 400 to 1
@@ -300,8 +300,8 @@ bool is_of_load(const Candidate& one, const std::vector<std::string>& covariates
 }  // namespace
 
 std::vector<Tested> interactions(const std::vector<Tested>& tested,
-                                 const std::vector<NamedEffect>& named, const FitState& fit,
-                                 const ScoreTest& tests) {
+                                 const std::vector<NamedEffect>& named,
+                                 const fitting::FitState& fit, const ScoreTest& tests) {
   const FormulaGrammar grammar(fit, tests.context());
   const std::vector<std::string> covariates = covariates_of(tests.context());
   std::vector<Tested> result;
@@ -422,4 +422,4 @@ void put_before(Explanations& explanations, const std::vector<ExplainingEffect>&
   explanations.effects.insert(explanations.effects.begin(), chances.begin(), chances.end());
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

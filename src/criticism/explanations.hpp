@@ -18,7 +18,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// One that is named missing.
 struct NamedEffect {
@@ -32,7 +32,8 @@ struct NamedEffect {
 /// channels go with, and of what is carried with how fast it is driven and turned.
 [[nodiscard]] std::vector<Tested> interactions(const std::vector<Tested>& tested,
                                                const std::vector<NamedEffect>& named,
-                                               const FitState& fit, const ScoreTest& tests);
+                                               const fitting::FitState& fit,
+                                               const ScoreTest& tests);
 
 /// Of what the ground's tests leave; none where nothing is named.
 [[nodiscard]] Explanations explanations_of(const std::vector<Tested>& tested,
@@ -49,4 +50,4 @@ void explain(Diagnosis& diagnosis, const SearchedEffects& searched, const ModelF
 /// Effects that belong to every set, put before the others.
 void put_before(Explanations& explanations, const std::vector<ExplainingEffect>& certain);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -13,7 +13,7 @@
 #include <optional>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 bool is_motion(Channel channel) {
@@ -23,7 +23,7 @@ bool is_motion(Channel channel) {
 /// Larger wheels make all that is driven larger alike: one constant instead of two or three.
 ModelFit with_wheel_scale(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                           std::size_t first) {
-  const CatalogueRecord* scale = find_record("wheel scale");
+  const effects::CatalogueRecord* scale = effects::find_record("wheel scale");
   std::vector<Effect> effects(fit.model.effects.begin(),
                               fit.model.effects.begin() + static_cast<std::ptrdiff_t>(first));
   std::vector<double> factors;
@@ -37,7 +37,7 @@ ModelFit with_wheel_scale(const std::vector<DrivenRecording>& recordings, const 
   }
   if (factors.size() < 2 || scale == nullptr) return fit;
   effects.push_back(catalogue_effect(scale->entry));
-  effects.back().coefficients = {median(factors)};
+  effects.back().coefficients = {statistics::median(factors)};
   const std::optional<ModelFit> one = refit_by(recordings, fit, std::move(effects));
   if (!one || !does_as_well(*one, fit)) return fit;
   return *one;
@@ -103,4 +103,4 @@ ModelFit with_fewest(const std::vector<DrivenRecording>& recordings, const Model
   return with_each_wheel(recordings, with_wheel_scale(recordings, fit, first), first);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// A wheel (left or right) that is by a share g larger than stated.
 [[nodiscard]] Effect wheel_of_other_size(Channel wheel, double g);
@@ -22,4 +22,4 @@ namespace trussmap {
 [[nodiscard]] ModelFit with_fewest(const std::vector<DrivenRecording>& recordings,
                                    const ModelFit& fit, std::size_t first);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

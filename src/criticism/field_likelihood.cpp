@@ -11,7 +11,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr int kLengthsTried = 7;
@@ -47,7 +47,7 @@ Eigen::MatrixXd covariance_over(const PlaceScores& scores, double length) {
 }
 
 FieldModes modes_of(const ScoresBeside& one, const Eigen::MatrixXd& root) {
-  const SymmetricModes modes = symmetric_modes(root.transpose() * one.G * root);
+  const linalg::SymmetricModes modes = linalg::symmetric_modes(root.transpose() * one.G * root);
   FieldModes result;
   result.variances = modes.eigenvalues.cwiseMax(0.0);
   result.t = modes.eigenvectors.transpose() * (root.transpose() * one.s);
@@ -121,7 +121,7 @@ void ScoresBeside::take_out(const Eigen::MatrixXd& amounts, double stiffness) {
   Eigen::MatrixXd own = amounts.transpose() * columns;
   const double trace = own.trace();
   own.diagonal().array() += stiffness;
-  const DenseCholesky factor(own);
+  const linalg::DenseCholesky factor(own);
   const Eigen::MatrixXd solved = factor.solve(columns.transpose());
   const Eigen::VectorXd score = amounts.transpose() * s;
   const Eigen::VectorXd value = factor.solve(Eigen::MatrixXd(score));
@@ -161,12 +161,13 @@ FieldLikelihood likelihood_of(const ScoresBeside& one, const FieldPriors& priors
 }
 
 double FieldForm::chance(double phi) const {
-  return quadratic_form_p_value(value / phi, weights);
+  return statistics::quadratic_form_p_value(value / phi, weights);
 }
 
 FieldForm form_of(const ScoresBeside& one, const Eigen::MatrixXd& R) {
   const Eigen::MatrixXd root = triangle_of(R);
-  const Eigen::VectorXd weights = symmetric_modes(root.transpose() * one.G * root).eigenvalues;
+  const Eigen::VectorXd weights =
+      linalg::symmetric_modes(root.transpose() * one.G * root).eigenvalues;
   return {one.s.dot(R * one.s), {weights.begin(), weights.end()}};
 }
 
@@ -178,4 +179,4 @@ bool may_be_there(const ScoresBeside& one, const Eigen::MatrixXd& R) {
   return one.s.dot(R * one.s) > GR.trace() + kLeastSds * sd;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

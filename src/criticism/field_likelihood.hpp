@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// Fields that are thought possible, sigma = 1: L of each length.
 struct FieldPriors {
@@ -84,4 +84,4 @@ struct FieldForm {
 /// Whether that may be below 0.01 at all, by its mean and variance: quick.
 [[nodiscard]] bool may_be_there(const ScoresBeside& one, const Eigen::MatrixXd& R);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr std::size_t kMostChannels = 4;
@@ -92,7 +92,7 @@ bool is_within_band(const Tested& formula, const Tested& curve, double noise) {
   const int more = curve.score.dof - formula.score.dof;
   if (more <= 0) return false;
   const double beyond = std::max(0.0, curve.score.score - formula.score.score) / noise;
-  return chi2_p_value(beyond, more) > kWithinBand;
+  return statistics::chi2_p_value(beyond, more) > kWithinBand;
 }
 
 }  // namespace
@@ -126,8 +126,8 @@ FormulasTried formulas_beside(const Tested& best, const std::vector<Tested>& sti
   for (Tested& one : promising) {
     weigh(one);
     const double by = std::max(noise(), one.dispersion);
-    one.p_value = chi2_p_value(one.share_found * one.score.score / by, one.score.dof);
-    one.p_adjusted = bonferroni(one.p_value, 2.0 * (ground.tried + result.tried));
+    one.p_value = statistics::chi2_p_value(one.share_found * one.score.score / by, one.score.dof);
+    one.p_adjusted = statistics::bonferroni(one.p_value, 2.0 * (ground.tried + result.tried));
   }
   std::erase_if(promising, [&](const Tested& one) {
     return one.score.dof == 0 || one.p_adjusted >= ground.level;
@@ -148,4 +148,4 @@ FormulasTried formulas_beside(const Tested& best, const std::vector<Tested>& sti
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -16,11 +16,11 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// What a search has left, and the best that it found there.
 struct FormulaGround {
-  const FitState& fit;
+  const fitting::FitState& fit;
   const ScoreTest& left;
   int dof = 0;    ///< of what is left
   int tried = 0;  ///< tests in all, before
@@ -38,4 +38,4 @@ struct FormulasTried {
                                             const FormulaGrammar& grammar,
                                             const FormulaGround& ground);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -3,6 +3,8 @@
 #include "criticism/formulas.hpp"
 
 #include "criticism/driven_variables.hpp"
+#include "effects/channel_physics.hpp"
+#include "effects/channel_record.hpp"
 #include "recording/variable_names.hpp"
 #include "text/number_text.hpp"
 
@@ -13,7 +15,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 /// Belief, against a catalogue effect's: what is written down with one variable before what takes
@@ -61,7 +63,7 @@ bool is_of_time(Channel channel) {
 
 }  // namespace
 
-FormulaGrammar::FormulaGrammar(const FitState& fit, const ShapeContext& context) {
+FormulaGrammar::FormulaGrammar(const fitting::FitState& fit, const fitting::ShapeContext& context) {
   for (const char* name : {"speed", "turn_rate", "t"}) add_term(name, context, false);
   for (const std::string& name : covariates_of(context)) add_term(name, context, true);
   const Area area = driven_area(fit);
@@ -71,7 +73,7 @@ FormulaGrammar::FormulaGrammar(const FitState& fit, const ShapeContext& context)
   }
 }
 
-void FormulaGrammar::add_term(const std::string& name, const ShapeContext& context,
+void FormulaGrammar::add_term(const std::string& name, const fitting::ShapeContext& context,
                               bool covariate) {
   constexpr double kNoise = 0.05;  // of the most: a robot that spins drives a little to either side
   const Spread u = spread_of(name, context);
@@ -79,7 +81,7 @@ void FormulaGrammar::add_term(const std::string& name, const ShapeContext& conte
   if (name == "t") duration_ = u.most;
   // A covariate that is far from 0 throughout (a temperature) is taken from its mean.
   if (covariate && !u.two_sided() && std::abs(u.least + u.most) > 3.0 * (u.most - u.least)) {
-    const double mean = rounded_within(u.mean, u.most - u.least);
+    const double mean = text::rounded_within(u.mean, u.most - u.least);
     terms_.push_back({filled("(" + name + "-{mean})", {{"mean", mean}}), "", name, 0.0, 0.0, true});
     return;
   }
@@ -99,25 +101,7 @@ void FormulaGrammar::add_term(const std::string& name, const ShapeContext& conte
 }
 
 bool FormulaGrammar::speaks_of(Channel channel) {
-  switch (channel) {
-    case Channel::travel:
-    case Channel::left:
-    case Channel::right:
-    case Channel::wheels:
-    case Channel::difference:
-    case Channel::turn:
-    case Channel::drift:
-    case Channel::creep:
-    case Channel::compass:
-    case Channel::gyro:
-    case Channel::gyro_scale:
-    case Channel::sideways:
-    case Channel::steer:
-    case Channel::steer_gain:
-      return true;
-    default:
-      return false;
-  }
+  return effects::record_of(channel).varies && effects::acts_on(channel) != effects::ActsOn::views;
 }
 
 std::vector<Candidate> FormulaGrammar::of(Channel channel) const {
@@ -239,4 +223,4 @@ void FormulaGrammar::add_planes(Channel channel, std::vector<Candidate>& all) co
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

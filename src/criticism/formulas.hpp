@@ -21,12 +21,12 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// What formulas are made of: what a drive's rows hold, and where they were. Keeps a reference.
 class FormulaGrammar {
  public:
-  FormulaGrammar(const FitState& fit, const ShapeContext& context);
+  FormulaGrammar(const fitting::FitState& fit, const fitting::ShapeContext& context);
 
   /// Whether formulas are sought in the channel at all: those of the robot's motion, its compass
   /// and gyro.
@@ -44,7 +44,7 @@ class FormulaGrammar {
     double most = 0.0;
     bool covariate = false;
   };
-  void add_term(const std::string& name, const ShapeContext& context, bool covariate);
+  void add_term(const std::string& name, const fitting::ShapeContext& context, bool covariate);
 
   void add_powers(Channel channel, std::vector<Candidate>& all) const;
   void add_products(Channel channel, std::vector<Candidate>& all) const;
@@ -58,4 +58,4 @@ class FormulaGrammar {
   double reach_ = 0.0;  ///< m, half of the floor's diagonal
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

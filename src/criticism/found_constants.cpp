@@ -15,8 +15,8 @@ namespace {
 void doubt(const Effect& effect, const std::vector<LookAlike>& alike, RobotConstants& constants) {
   const LookAlike* rival = closest_rival(alike);
   if (rival == nullptr) return;
-  constants.doubts.push_back(joined(effect.name, " looks the same here as ", rival->effect.name,
-                                    ": tell them apart first"));
+  constants.doubts.push_back(text::joined(effect.name, " looks the same here as ",
+                                          rival->effect.name, ": tell them apart first"));
 }
 
 }  // namespace

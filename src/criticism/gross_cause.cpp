@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kGrossMisfit = 10.0;  // chi^2/dof of the fit without
@@ -23,11 +23,11 @@ constexpr std::size_t kMostMeasurements = 20000;
 
 /// Without coefficients.
 std::vector<Effect> causes_for(const ModelFit& given, const ScoreTest& tests, bool scale) {
-  const FitState& fit = *given.state;
-  const bool gyro = has_gyro(fit.recordings);
+  const fitting::FitState& fit = *given.state;
+  const bool gyro = odometry::has_gyro(fit.recordings);
   std::vector<Effect> result;
   for (const Candidate& one : candidates_for(fit, tests.context())) {
-    const CatalogueRecord* record = record_of(one);
+    const effects::CatalogueRecord* record = record_of(one);
     const Channel channel = one.effect.channel;
     if (record == nullptr || !one.family.empty() || record->entry.of_covariate()) continue;
     const bool turns = channel == Channel::turn || channel == Channel::rotate ||
@@ -35,7 +35,7 @@ std::vector<Effect> causes_for(const ModelFit& given, const ScoreTest& tests, bo
                        wheel_of(channel).has_value();
     const bool moves = channel == Channel::travel || channel == Channel::advance ||
                        channel == Channel::wheels || channel == Channel::sideways;
-    if (!turns && !moves && !is_of_steered_drive(channel)) continue;
+    if (!turns && !moves && !effects::is_of_steered_drive(channel)) continue;
     if (gyro && channel == Channel::drift) continue;  // its bias is what drifts
     if (moves && !scale) continue;
     if (!tests.is_present(one.effect)) result.push_back(one.effect);
@@ -96,7 +96,7 @@ double cost_of(const ModelFit& fit) {
 
 std::optional<ModelFit> gross_cause(const std::vector<DrivenRecording>& recordings,
                                     const ModelFit& given, bool scale) {
-  const FitState& state = *given.state;
+  const fitting::FitState& state = *given.state;
   if (given.chi2 < kGrossMisfit * std::max(1, given.dof)) return std::nullopt;
   if (state.problem.measurements.size() > kMostMeasurements) return std::nullopt;
   const ScoreTest tests(state);
@@ -113,4 +113,4 @@ std::optional<ModelFit> gross_cause(const std::vector<DrivenRecording>& recordin
   return best;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

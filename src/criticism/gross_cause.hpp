@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 inline constexpr double kLittleLeft = 2.0;  ///< chi^2/dof of a fit that explains what is there
 
@@ -23,4 +23,4 @@ inline constexpr double kLittleLeft = 2.0;  ///< chi^2/dof of a fit that explain
 [[nodiscard]] std::optional<ModelFit> gross_cause(const std::vector<DrivenRecording>& recordings,
                                                   const ModelFit& given, bool scale);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

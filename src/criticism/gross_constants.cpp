@@ -23,7 +23,7 @@
 #include <cmath>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kMisfit = 1e-6;       // p of chi^2, below which they are asked for
@@ -38,18 +38,18 @@ bool is_scale(Channel channel) {
 /// Those that the recordings can have, and the model lacks; without coefficients.
 std::vector<Effect> constants_for(const std::vector<DrivenRecording>& recordings,
                                   const ModelFit& given) {
-  const FitState& fit = *given.state;
-  const bool scale =
-      measures_distance(recordings, fitter_options(given.options).problem, given.model.noise);
-  const bool gyro = has_gyro(fit.recordings);
+  const fitting::FitState& fit = *given.state;
+  const bool scale = calibration::measures_distance(
+      recordings, fitting::fitter_options(given.options).problem, given.model.noise);
+  const bool gyro = odometry::has_gyro(fit.recordings);
   std::vector<Effect> result;
-  const ShapeContext context(fit.recordings, fit.model.robot, fit.paths);
+  const fitting::ShapeContext context(fit.recordings, fit.model.robot, fit.paths);
   for (const Candidate& one : candidates_for(fit, context)) {
-    const CatalogueRecord* record = record_of(one);
+    const effects::CatalogueRecord* record = record_of(one);
     const Channel channel = one.effect.channel;
     if (record == nullptr || !record->robot_constant) continue;
     if (!scale && is_scale(channel)) continue;
-    if (is_delay(channel)) continue;                  // these need a fit that is near already
+    if (effects::is_delay(channel)) continue;         // these need a fit that is near already
     if (gyro && channel == Channel::drift) continue;  // its bias is what drifts
     const bool there = std::any_of(
         fit.model.effects.begin(), fit.model.effects.end(), [&one](const Effect& other) {
@@ -199,7 +199,7 @@ std::optional<ModelFit> those_without_gate(const std::vector<DrivenRecording>& r
   std::optional<ModelFit> found = those_that_matter(recordings, open, *all);
   if (!found) return std::nullopt;
   found->options = given.options;
-  return if_possible<ModelFit>([&] { return refit(recordings, found->model, *found); });
+  return if_possible<ModelFit>([&] { return fitting::refit(recordings, found->model, *found); });
 }
 
 /// Of legs that no fit has seen.
@@ -231,7 +231,7 @@ bool says_the_same(const Effect& one, const std::vector<Effect>& fitted) {
 std::vector<LookAlike> look_alikes_at(const std::vector<DrivenRecording>& recordings,
                                       const ModelFit& fit, const ScoreTest& at_fit,
                                       std::size_t place) {
-  const FitState& state = *fit.state;
+  const fitting::FitState& state = *fit.state;
   const Effect& effect = fit.model.effects[place];
   const ScoreTest tests = at_fit.lacking(place, {effect});
   std::vector<Tested> asked(1);
@@ -259,7 +259,7 @@ std::optional<GrossConstants> sure_constants(const std::vector<DrivenRecording>&
   if (constants.empty()) return std::nullopt;
   const std::size_t first = given.model.effects.size();
   std::optional<CalibratedStart> start;
-  if (has_steering(given.model.robot)) {
+  if (drive::has_steering(given.model.robot)) {
     start = start_of_constants(recordings, given, constants);
     constants = start->constants;
     for (Effect& one : constants) one.coefficients.clear();
@@ -284,8 +284,8 @@ std::optional<GrossConstants> gross_constants(const std::vector<DrivenRecording>
   if (given.p_value > kMisfit) return std::nullopt;
   std::optional<GrossConstants> constants = sure_constants(recordings, given, legs);
   if (constants && per_dof(constants->fit) < kLittleLeft) return constants;
-  const bool scale =
-      measures_distance(recordings, fitter_options(given.options).problem, given.model.noise);
+  const bool scale = calibration::measures_distance(
+      recordings, fitting::fitter_options(given.options).problem, given.model.noise);
   if (std::optional<ModelFit> cause = gross_cause(recordings, given, scale)) {
     return GrossConstants{*std::move(cause), given.model.effects.size()};
   }
@@ -306,7 +306,7 @@ Finding finding_at(const std::vector<DrivenRecording>& recordings, const ModelFi
   const double scatter = scatter_left(fit);
   const double score = lacking ? chi2_of_all(*lacking) - chi2_of_all(fit) : wald(fit, place);
   result.score = std::clamp(score, 0.0, most);
-  result.p_value = result.p_adjusted = chi2_p_value(result.score / scatter, result.dof);
+  result.p_value = result.p_adjusted = statistics::chi2_p_value(result.score / scatter, result.dof);
   result.evidence = result.score / scatter;
   result.status = Status::missing;
   result.joint = effect.coefficients;
@@ -339,7 +339,7 @@ std::vector<Finding> findings_of(const std::vector<DrivenRecording>& recordings,
   const ModelFit& fit = constants.fit;
   HeldOutMetrics predicted;
   try {
-    predicted = metrics_of(predict_held_out(recordings, fit, legs));
+    predicted = validation::metrics_of(predict_held_out(recordings, fit, legs));
   } catch (const SolveError&) {  // what is left without those legs does not tell them
   }
   const double most = std::max(0.0, given.chi2 - fit.chi2);
@@ -353,4 +353,4 @@ std::vector<Finding> findings_of(const std::vector<DrivenRecording>& recordings,
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

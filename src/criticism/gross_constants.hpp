@@ -26,7 +26,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// The given model with gross constants.
 struct GrossConstants {
@@ -46,4 +46,4 @@ struct GrossConstants {
                                                const GrossConstants& constants,
                                                const LegOptions& legs);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

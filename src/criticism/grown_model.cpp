@@ -8,7 +8,7 @@
 
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 void GrownModel::add(const std::vector<Candidate>& effects, ModelFit fit) {
   candidates_.insert(candidates_.end(), effects.begin(), effects.end());
@@ -18,7 +18,7 @@ void GrownModel::add(const std::vector<Candidate>& effects, ModelFit fit) {
 ModelFit GrownModel::fitted(const std::vector<Effect>& effects) const {
   Model model = fit_.model;
   model.effects = effects;
-  return refit(recordings_, model, fit_);
+  return fitting::refit(recordings_, model, fit_);
 }
 
 void GrownModel::seek_parameters_anew() {
@@ -61,10 +61,10 @@ std::vector<std::string> GrownModel::eliminate_backward() {
   }
 }
 
-const HorizonErrors& GrownModel::horizons() {
+const validation::HorizonErrors& GrownModel::horizons() {
   if (judged_ != fit_.state) {
     judged_ = fit_.state;
-    horizons_ = horizon_errors(*judged_);
+    horizons_ = validation::horizon_errors(*judged_);
   }
   return horizons_;
 }
@@ -74,4 +74,4 @@ ModelFit GrownModel::finished() && {
   return std::move(fit_);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

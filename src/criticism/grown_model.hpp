@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 class GrownModel {
  public:
@@ -44,7 +44,7 @@ class GrownModel {
   std::vector<std::string> eliminate_backward();
 
   /// Of dead reckoning by the present fit; reckoned once.
-  [[nodiscard]] const HorizonErrors& horizons();
+  [[nodiscard]] const validation::HorizonErrors& horizons();
 
   /// The fit, with standard errors that are as wide as the places that were sought make them.
   [[nodiscard]] ModelFit finished() &&;
@@ -53,9 +53,9 @@ class GrownModel {
   const std::vector<DrivenRecording>& recordings_;
   ModelFit fit_;
   std::size_t given_;
-  std::vector<Candidate> candidates_;       ///< one per effect of the model; empty for those given
-  std::shared_ptr<const FitState> judged_;  ///< of which the errors over the horizons are
-  HorizonErrors horizons_;
+  std::vector<Candidate> candidates_;  ///< one per effect of the model; empty for those given
+  std::shared_ptr<const fitting::FitState> judged_;  ///< of which the errors over the horizons are
+  validation::HorizonErrors horizons_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

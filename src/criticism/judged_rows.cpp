@@ -10,6 +10,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace criticism;
+
 namespace {
 
 constexpr int kMostChanges = 2;  // of the rows; each costs a search
@@ -47,6 +49,10 @@ JudgedRun run_by(PreparedRecordings rows, ModelFit fit, const Noise& stated,
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::criticism {
+
 JudgedRun judged_run(PreparedRecordings rows, ModelFit fit, const Noise& stated,
                      const DiagnoseOptions& options) {
   JudgedRun judged = run_by(std::move(rows), std::move(fit), stated, options);
@@ -65,6 +71,10 @@ JudgedRun judged_run(PreparedRecordings rows, ModelFit fit, const Noise& stated,
   }
   return judged;
 }
+
+}  // namespace trussmap::criticism
+
+namespace trussmap {
 
 Comparison compare(const PreparedRecordings& recordings, const ModelFit& fit,
                    const CompareOptions& options) {

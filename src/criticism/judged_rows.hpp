@@ -10,7 +10,7 @@
 
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 struct JudgedRun {
   PreparedRecordings rows;
@@ -22,4 +22,4 @@ struct JudgedRun {
 [[nodiscard]] JudgedRun judged_run(PreparedRecordings rows, ModelFit fit, const Noise& stated,
                                    const DiagnoseOptions& options);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

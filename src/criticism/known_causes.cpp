@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr std::size_t kFirsts = 6;  // that a set is begun with
@@ -191,4 +191,4 @@ std::vector<KnownCause> known_causes_of(const std::vector<std::size_t>& found,
   return best == nullptr ? std::vector<KnownCause>() : best->causes;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -12,11 +12,11 @@
 #include <cstddef>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// What is being searched: a fit's effects, asked of what is left of its residuals.
 struct SearchGround {
-  const FitState& fit;
+  const fitting::FitState& fit;
   const ScoreTest& tests;
   int dof = 0;    ///< of what is left
   int tried = 0;  ///< tests in all
@@ -38,4 +38,4 @@ struct KnownCause {
                                                       const std::vector<Tested>& tested,
                                                       const SearchGround& ground);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

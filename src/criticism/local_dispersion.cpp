@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kChance = 0.001;
@@ -16,8 +16,10 @@ constexpr double kDoubt = 0.05;  // that it is larger still
 
 }  // namespace
 
-LocalDispersion::LocalDispersion(const FitState& fit, const ScoreTest& tests) : tests_(tests) {
-  const FitProjection P(fit, fit.problem, tests.system(), tests.present(), tests.fitted_rows());
+LocalDispersion::LocalDispersion(const fitting::FitState& fit, const ScoreTest& tests)
+    : tests_(tests) {
+  const fitting::FitProjection P(fit, fit.problem, tests.system(), tests.present(),
+                                 tests.fitted_rows());
   own_.reserve(fit.problem.measurements.size());
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
     own_.push_back(P.left_out(k) ? Eigen::MatrixXd::Zero(fit.problem.measurements[k].rows,
@@ -50,11 +52,12 @@ double LocalDispersion::operator()(const Score& score) const {
   if (!(v1 > 0.0)) return 1.0;
   const double lambda = x2 / v1;
   const double n = v1 * v1 / v2;
-  const double above = chi2_p_value_real(n * lambda, n);
+  const double above = statistics::chi2_p_value_real(n * lambda, n);
   if (above < kChance) return lambda;
   // Noise that is stated too large: what it is at most.
-  if (1.0 - above < kChance) return std::min(1.0, n * lambda / chi2_quantile(kDoubt, n));
+  if (1.0 - above < kChance)
+    return std::min(1.0, n * lambda / statistics::chi2_quantile(kDoubt, n));
   return 1.0;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -19,12 +19,12 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 class LocalDispersion {
  public:
   /// Keeps a reference to the tests, whose present state counts.
-  LocalDispersion(const FitState& fit, const ScoreTest& tests);
+  LocalDispersion(const fitting::FitState& fit, const ScoreTest& tests);
 
   /// lambda, or 1 where that could be chance; where it is less, what it is at most (95 %). The
   /// score has its columns.
@@ -35,4 +35,4 @@ class LocalDispersion {
   std::vector<Eigen::MatrixXd> own_;  ///< P_kk of each measurement
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -10,6 +10,8 @@
 #include <numeric>
 
 namespace trussmap {
+using namespace criticism;
+
 namespace {
 
 constexpr double kLeastCosine = 0.95;
@@ -23,6 +25,10 @@ bool is_rival(const Candidate& one, const Candidate& winner) {
 }
 
 }  // namespace
+
+}  // namespace trussmap
+
+namespace trussmap::criticism {
 
 std::vector<LookAlike> look_alikes_of(std::size_t at, const std::vector<Tested>& tested,
                                       const std::vector<std::size_t>& others,
@@ -42,7 +48,7 @@ std::vector<LookAlike> look_alikes_of(std::size_t at, const std::vector<Tested>&
   }
   visit_scores(tests, rivals, Resolution::exact, [&](std::size_t k, const Score& score) {
     if (score.dof == 0) return;
-    const Eigen::VectorXd nearest = least_squares(score.projected, trace);
+    const Eigen::VectorXd nearest = linalg::least_squares(score.projected, trace);
     const double cosine = (score.projected * nearest).norm() / length;
     if (cosine >= kLeastCosine) alike.push_back({rivals[k].effect, std::min(1.0, cosine)});
   });
@@ -76,6 +82,10 @@ std::vector<double> chi2_behind(const Effect& effect, const std::vector<Effect>&
   return behind;
 }
 
+}  // namespace trussmap::criticism
+
+namespace trussmap {
+
 const LookAlike* closest_rival(const std::vector<LookAlike>& alike) {
   const auto found = std::find_if(alike.begin(), alike.end(),
                                   [](const LookAlike& one) { return !one.told_apart(); });
@@ -108,6 +118,10 @@ bool all_fitted(const ModelFit& fit) {
 }
 
 }  // namespace
+
+}  // namespace trussmap
+
+namespace trussmap::criticism {
 
 void weigh_by_fits(std::vector<LookAlike>& alike, const Effect& effect, const ScoreTest& tests,
                    const FitWith& with) {
@@ -156,4 +170,4 @@ std::optional<Status> status_beside(const Effect& effect,
   return status;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

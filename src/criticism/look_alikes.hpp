@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// Of tested[at] among the others; the most alike first, at most twelve. `others` are missing, too:
 /// what they explain tells nothing apart. `dof` of the fit.
@@ -49,4 +49,4 @@ void weigh_by_fits(std::vector<LookAlike>& alike, const Effect& effect, const Sc
 [[nodiscard]] std::optional<Status> status_beside(
     const Effect& effect, const std::vector<std::vector<LookAlike>>& rivals);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kBorder = 1.0;  // lengths
@@ -19,7 +19,7 @@ double kappa_of(double length) {
 
 }  // namespace
 
-SparseMatrix matern_operator(const SquareGrid& grid, double length) {
+linalg::SparseMatrix matern_operator(const SquareGrid& grid, double length) {
   const double own = std::pow(kappa_of(length) * grid.cell, 2);
   std::vector<Eigen::Triplet<double, int>> entries;
   entries.reserve(idx(grid.nodes()) * 5);
@@ -36,7 +36,7 @@ SparseMatrix matern_operator(const SquareGrid& grid, double length) {
       if (row > 0) join(at - grid.columns, at);
     }
   }
-  SparseMatrix K(grid.nodes(), grid.nodes());
+  linalg::SparseMatrix K(grid.nodes(), grid.nodes());
   K.setFromTriplets(entries.begin(), entries.end());
   return K;
 }
@@ -48,8 +48,8 @@ Eigen::MatrixXd matern_covariance(const SquareGrid& grid, const std::vector<Grid
   wide.low -= border * grid.cell * Vector2::Ones();
   wide.columns += 2 * border;
   wide.rows += 2 * border;
-  const SparseMatrix K = matern_operator(wide, length);
-  SparseCholesky factor;
+  const linalg::SparseMatrix K = matern_operator(wide, length);
+  linalg::SparseCholesky factor;
   factor.analyse(K);
   factor.factorise(K);
   Eigen::MatrixXd X = Eigen::MatrixXd::Zero(K.rows(), static_cast<Eigen::Index>(nodes.size()));
@@ -66,4 +66,4 @@ Eigen::MatrixXd matern_covariance(const SquareGrid& grid, const std::vector<Grid
   return covariance;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -21,7 +21,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// A node of a grid: column along x, row along y, from 0 on.
 struct GridNode {
@@ -47,10 +47,10 @@ struct SquareGrid {
 };
 
 /// K of all nodes, those of a row one after the other; its lower triangle.
-[[nodiscard]] SparseMatrix matern_operator(const SquareGrid& grid, double length);
+[[nodiscard]] linalg::SparseMatrix matern_operator(const SquareGrid& grid, double length);
 
 /// Of these nodes among each other.
 [[nodiscard]] Eigen::MatrixXd matern_covariance(const SquareGrid& grid,
                                                 const std::vector<GridNode>& nodes, double length);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

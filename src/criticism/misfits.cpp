@@ -9,12 +9,13 @@
 #include <string>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kLeastChord = 0.1;  // m
 
-double squared(const RecordingSystem& system, const Measurement& one, std::size_t k) {
+double squared(const estimation::RecordingSystem& system, const estimation::Measurement& one,
+               std::size_t k) {
   return system.residuals().segment(system.first_row(k), one.rows).squaredNorm();
 }
 
@@ -26,17 +27,17 @@ struct DrivenLeg {
 
 class Legs {
  public:
-  Legs(const FitState& fit, const RecordingSystem& system)
+  Legs(const fitting::FitState& fit, const estimation::RecordingSystem& system)
       : problem_(fit.problem), state_(fit.adjustment.state), system_(system) {
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-      const Measurement& one = problem_.measurements[k];
-      if (is_segment(one)) segment_from_[one.from] = k;
+      const estimation::Measurement& one = problem_.measurements[k];
+      if (estimation::is_segment(one)) segment_from_[one.from] = k;
     }
   }
 
-  [[nodiscard]] DrivenLeg driven(const LegSpan& leg) const {
-    const Measurement& from = problem_.measurements[leg.from];
-    const Measurement& to = problem_.measurements[leg.to];
+  [[nodiscard]] DrivenLeg driven(const validation::LegSpan& leg) const {
+    const estimation::Measurement& from = problem_.measurements[leg.from];
+    const estimation::Measurement& to = problem_.measurements[leg.to];
     DrivenLeg result;
     LegMisfit& one = result.misfit;
     one.leg = leg.number;
@@ -48,7 +49,7 @@ class Legs {
     for (int node = from.from; node != to.from;) {
       const auto found = segment_from_.find(node);
       if (found == segment_from_.end()) break;
-      const Measurement& segment = problem_.measurements[found->second];
+      const estimation::Measurement& segment = problem_.measurements[found->second];
       one.chi2 += squared(system_, segment, found->second);
       one.dof += segment.rows;
       const Pose& a = pose(segment.from);
@@ -81,9 +82,9 @@ class Legs {
     return state_.poses[idx(node - problem_.landmark_count())];
   }
 
-  const RecordingProblem& problem_;
-  const RecordingState& state_;
-  const RecordingSystem& system_;
+  const estimation::RecordingProblem& problem_;
+  const estimation::RecordingState& state_;
+  const estimation::RecordingSystem& system_;
   std::map<int, std::size_t> segment_from_;  ///< node -> measurement
 };
 
@@ -103,13 +104,13 @@ void add(const DrivenLeg& leg, std::map<RouteName, RouteMisfit>& routes) {
   route.force += leg.force;
 }
 
-std::vector<LandmarkMisfit> landmarks_of(const RecordingProblem& problem,
-                                         const RecordingSystem& system) {
+std::vector<LandmarkMisfit> landmarks_of(const estimation::RecordingProblem& problem,
+                                         const estimation::RecordingSystem& system) {
   std::map<int, LandmarkMisfit> landmarks;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
-    const Measurement& one = problem.measurements[k];
-    const bool survey = is_surveyed_place(one);
-    if (!survey && !is_sighting(one)) continue;
+    const estimation::Measurement& one = problem.measurements[k];
+    const bool survey = estimation::is_surveyed_place(one);
+    if (!survey && !estimation::is_sighting(one)) continue;
     const int node = survey ? one.from : one.to;
     LandmarkMisfit& landmark = landmarks[node];
     landmark.landmark = problem.landmarks[idx(node)];
@@ -124,11 +125,12 @@ std::vector<LandmarkMisfit> landmarks_of(const RecordingProblem& problem,
 
 }  // namespace
 
-Misfits find_misfits(const FitState& fit, const ScoreTest& tests, const LegOptions& options) {
+Misfits find_misfits(const fitting::FitState& fit, const ScoreTest& tests,
+                     const LegOptions& options) {
   Misfits result;
   const Legs legs(fit, tests.system());
   std::map<RouteName, RouteMisfit> routes;
-  for (const LegSpan& span : leg_spans(fit, options)) {
+  for (const validation::LegSpan& span : validation::leg_spans(fit, options)) {
     DrivenLeg leg = legs.driven(span);
     add(leg, routes);
     result.legs.push_back(std::move(leg.misfit));
@@ -146,4 +148,4 @@ Misfits find_misfits(const FitState& fit, const ScoreTest& tests, const LegOptio
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

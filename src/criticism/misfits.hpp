@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// All of them, worst first.
 struct Misfits {
@@ -19,7 +19,7 @@ struct Misfits {
 };
 
 /// `tests` are of this fit.
-[[nodiscard]] Misfits find_misfits(const FitState& fit, const ScoreTest& tests,
+[[nodiscard]] Misfits find_misfits(const fitting::FitState& fit, const ScoreTest& tests,
                                    const LegOptions& options);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr std::size_t kMostSuspects = 3;
@@ -20,7 +20,7 @@ constexpr double kAllows = 0.05;      // p of chi^2
 constexpr double kSuspicious = 1e-4;  // p, times the effects asked of
 
 /// Those without a place or threshold to be sought.
-std::vector<Candidate> plain_candidates(const FitState& fit, const ScoreTest& tests) {
+std::vector<Candidate> plain_candidates(const fitting::FitState& fit, const ScoreTest& tests) {
   std::vector<Candidate> candidates = candidates_for(fit, tests.context());
   std::erase_if(candidates, [](const Candidate& one) { return !one.family.empty(); });
   return candidates;
@@ -48,7 +48,7 @@ std::vector<std::size_t> suspicious_pair(const ScoreTest& tests,
 }
 
 /// What explains most, each conditioned on those before it.
-std::vector<Effect> suspects(const FitState& fit) {
+std::vector<Effect> suspects(const fitting::FitState& fit) {
   ScoreTest tests(fit);
   const std::vector<Candidate> candidates = plain_candidates(fit, tests);
   std::vector<Effect> found;
@@ -61,7 +61,8 @@ std::vector<Effect> suspects(const FitState& fit) {
       if (score.dof == 0 || dof <= score.dof) return;
       const double left = std::max(1.0, (chi2 - score.score) / (dof - score.dof));
       const double net = score.score / left;
-      if (chi2_p_value(net, score.dof) * static_cast<double>(candidates.size()) >= kSuspicious) {
+      if (statistics::chi2_p_value(net, score.dof) * static_cast<double>(candidates.size()) >=
+          kSuspicious) {
         return;
       }
       // By evidence: p of what is large is 0 for many.
@@ -118,8 +119,8 @@ FitWithNoise with_noise_beside(const std::vector<DrivenRecording>& recordings, c
     // Which processes there are is asked once.
     if (round > 0) options.most_processes = 0;
     const ModelFit beside = with_suspects(recordings, result.fit);
-    NoiseReml reml(*beside.state, stated);
-    FittedNoise next = fit_noise(reml, {}, options);
+    fitting::NoiseReml reml(*beside.state, stated);
+    FittedNoise next = fitting::fit_noise(reml, {}, options);
     if (round > 0 && next.gain < gain + kStillBetter) break;
     next.tried = std::max(next.tried, result.noise.tried);
     result.noise = std::move(next);
@@ -142,8 +143,8 @@ std::optional<FitWithNoise> with_noise_beside_found(const std::vector<DrivenReco
   NoiseFitOptions options;
   options.errors = false;
   try {
-    NoiseReml reml(*with->state, stated);
-    FittedNoise noise = fit_noise(reml, {}, options);
+    fitting::NoiseReml reml(*with->state, stated);
+    FittedNoise noise = fitting::fit_noise(reml, {}, options);
     if (noise.noise == under.noise.noise) return std::nullopt;
     noise.tried = std::max(noise.tried, under.noise.tried);
     ModelFit fit = refit_under(recordings, under.fit, noise.noise);
@@ -153,4 +154,4 @@ std::optional<FitWithNoise> with_noise_beside_found(const std::vector<DrivenReco
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -21,7 +21,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// `stated`: the noise that sizes are kept at where they can be. Throws as refit does.
 [[nodiscard]] FitWithNoise with_noise_beside(const std::vector<DrivenRecording>& recordings,
@@ -34,4 +34,4 @@ namespace trussmap {
     const std::vector<DrivenRecording>& recordings, const FitWithNoise& under,
     const std::optional<ModelFit>& with, const std::vector<Candidate>& found, const Noise& stated);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

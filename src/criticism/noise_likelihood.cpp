@@ -10,18 +10,19 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
-NoiseLikelihood::NoiseLikelihood(const FitState& fit, const Eigen::MatrixXd& nuisance)
+NoiseLikelihood::NoiseLikelihood(const fitting::FitState& fit, const Eigen::MatrixXd& nuisance)
     : fit_(fit),
       nuisance_stated_(nuisance),
       problem_(fit.problem),
       system_(problem_, fit.columns.border) {
   if (nuisance_stated_.cols() == 0) nuisance_stated_.resize(system_.rows(), 0);
   nuisance_ = nuisance_stated_;
-  system_.set_weights(weights_without(fit.adjustment.left_out, problem_.measurements.size()));
-  for (const Measurement& one : problem_.measurements) {
-    Matrix4 colour = Matrix4::Zero();
+  system_.set_weights(
+      estimation::weights_without(fit.adjustment.left_out, problem_.measurements.size()));
+  for (const estimation::Measurement& one : problem_.measurements) {
+    estimation::Matrix4 colour = estimation::Matrix4::Zero();
     colour.topLeftCorner(one.rows, one.rows) =
         one.whitener.topLeftCorner(one.rows, one.rows).inverse();
     colour_.push_back(colour);
@@ -30,20 +31,20 @@ NoiseLikelihood::NoiseLikelihood(const FitState& fit, const Eigen::MatrixXd& nui
 }
 
 double NoiseLikelihood::minus_two_log() {
-  return restricted_likelihood(system_, problem_, fit_.adjustment.state,
-                               fit_.adjustment.coefficients, nuisance_)
+  return estimation::restricted_likelihood(system_, problem_, fit_.adjustment.state,
+                                           fit_.adjustment.coefficients, nuisance_)
       .integrated();
 }
 
 double NoiseLikelihood::deviance(const NoiseLaw& law, double variance) {
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-    Measurement& one = problem_.measurements[k];
-    const Matrix4& stated = fit_.problem.measurements[k].whitener;
+    estimation::Measurement& one = problem_.measurements[k];
+    const estimation::Matrix4& stated = fit_.problem.measurements[k].whitener;
     const bool noisier = variance > 0.0 && !law.added[k].isZero(0.0);
     one.whitener =
-        noisier
-            ? whitener_of(colour_[k] * colour_[k].transpose() + variance * law.added[k], one.rows)
-            : stated;
+        noisier ? estimation::whitener_of(
+                      colour_[k] * colour_[k].transpose() + variance * law.added[k], one.rows)
+                : stated;
     if (nuisance_.cols() == 0) continue;
     const int at = system_.first_row(k);
     nuisance_.middleRows(at, one.rows) =
@@ -92,4 +93,4 @@ NoiseLikelihood::Best NoiseLikelihood::best(const NoiseLaw& law, double guess) {
   return {std::exp(at), std::max(0.0, -value[1])};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -9,11 +9,11 @@
 #include <string>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 /// Of each row, by random signs: E[z' R z] over the rows of a source is the trace of R there.
-Eigen::VectorXd redundancies(const RecordingSystem& system) {
+Eigen::VectorXd redundancies(const estimation::RecordingSystem& system) {
   constexpr int kBatches = 3;
   constexpr Eigen::Index kProbes = 16;  // at once
   std::mt19937_64 random(1);
@@ -36,14 +36,15 @@ Eigen::VectorXd redundancies(const RecordingSystem& system) {
 
 }  // namespace
 
-std::vector<SourceCalibration> calibrate_sources(const FitState& fit, const ScoreTest& tests) {
+std::vector<SourceCalibration> calibrate_sources(const fitting::FitState& fit,
+                                                 const ScoreTest& tests) {
   constexpr double kLeastRedundancy = 5.0;
-  const RecordingSystem& system = tests.system();
+  const estimation::RecordingSystem& system = tests.system();
   const Eigen::VectorXd redundancy = redundancies(system);
   std::vector<std::string> order;
   std::map<std::string, std::pair<double, double>> sums;
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
-    const Measurement& one = fit.problem.measurements[k];
+    const estimation::Measurement& one = fit.problem.measurements[k];
     for (int row = 0; row < one.rows; ++row) {
       const std::string source(one.kind->noise(row));
       if (!sums.contains(source)) order.push_back(source);
@@ -63,11 +64,12 @@ std::vector<SourceCalibration> calibrate_sources(const FitState& fit, const Scor
   return result;
 }
 
-std::vector<SourceResiduals> residuals_by_source(const RecordingProblem& problem,
-                                                 const std::vector<CheckedMeasurement>& checked) {
+std::vector<SourceResiduals> residuals_by_source(
+    const estimation::RecordingProblem& problem,
+    const std::vector<estimation::CheckedMeasurement>& checked) {
   std::vector<SourceResiduals> result;
-  for (const CheckedMeasurement& one : checked) {
-    const Measurement& measured = problem.measurements[idx(one.measurement)];
+  for (const estimation::CheckedMeasurement& one : checked) {
+    const estimation::Measurement& measured = problem.measurements[idx(one.measurement)];
     for (Eigen::Index row = 0; row < measured.rows; ++row) {
       if (!std::isfinite(one.minimal_detectable[row])) continue;
       const std::string_view source = measured.kind->noise(row);
@@ -84,4 +86,4 @@ std::vector<SourceResiduals> residuals_by_source(const RecordingProblem& problem
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -10,14 +10,15 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// Sources in the order in which they first appear; those that are hardly checked are left out.
-[[nodiscard]] std::vector<SourceCalibration> calibrate_sources(const FitState& fit,
+[[nodiscard]] std::vector<SourceCalibration> calibrate_sources(const fitting::FitState& fit,
                                                                const ScoreTest& tests);
 
 /// Standardised residuals of data_snooping.hpp, source by source in the same order.
 [[nodiscard]] std::vector<SourceResiduals> residuals_by_source(
-    const RecordingProblem& problem, const std::vector<CheckedMeasurement>& checked);
+    const estimation::RecordingProblem& problem,
+    const std::vector<estimation::CheckedMeasurement>& checked);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

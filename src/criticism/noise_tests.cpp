@@ -14,7 +14,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr Eigen::Index kProbes = 48;
@@ -29,15 +29,17 @@ constexpr double kFewest = 10.0;  // degrees of freedom that have tails to speak
 
 /// Upper tail of a law with this skewness, in its standard deviations (Pearson's three moments).
 double skewed_tail(double z, double skewness) {
-  if (skewness < 1e-3) return normal_p_value(z);
+  if (skewness < 1e-3) return statistics::normal_p_value(z);
   const double dof = 8.0 / (skewness * skewness);
   const double chi2 = dof + std::sqrt(2.0 * dof) * z;
-  return chi2 <= 0.0 ? 1.0 : chi2_p_value_real(chi2, dof);
+  return chi2 <= 0.0 ? 1.0 : statistics::chi2_p_value_real(chi2, dof);
 }
 
 /// V times columns of whitened rows.
-Eigen::MatrixXd law_times(const std::vector<Matrix4>& V, const RecordingProblem& problem,
-                          const RecordingSystem& system, const Eigen::MatrixXd& columns) {
+Eigen::MatrixXd law_times(const std::vector<estimation::Matrix4>& V,
+                          const estimation::RecordingProblem& problem,
+                          const estimation::RecordingSystem& system,
+                          const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(columns.rows(), columns.cols());
   for (std::size_t k = 0; k < V.size(); ++k) {
     if (V[k].isZero(0.0)) continue;
@@ -56,18 +58,19 @@ struct LawScore {
   bool seen = false;
 };
 
-LawScore score_of(const NoiseLaw& law, const RecordingProblem& problem,
-                  const RecordingSystem& system, const FitProjection& P,
+LawScore score_of(const NoiseLaw& law, const estimation::RecordingProblem& problem,
+                  const estimation::RecordingSystem& system, const fitting::FitProjection& P,
                   const std::vector<Eigen::MatrixXd>& own, const Eigen::VectorXd& r,
                   const Eigen::MatrixXd& projected_probes) {
-  std::vector<Matrix4> V;
+  std::vector<estimation::Matrix4> V;
   double whole = 0.0;
   double expected = 0.0;
   double q = 0.0;
   for (std::size_t k = 0; k < law.added.size(); ++k) {
-    const Measurement& one = problem.measurements[k];
-    V.push_back(P.left_out(k) ? Matrix4(Matrix4::Zero())
-                              : Matrix4(one.whitener * law.added[k] * one.whitener.transpose()));
+    const estimation::Measurement& one = problem.measurements[k];
+    V.push_back(P.left_out(k)
+                    ? estimation::Matrix4(estimation::Matrix4::Zero())
+                    : estimation::Matrix4(one.whitener * law.added[k] * one.whitener.transpose()));
     const Eigen::MatrixXd block = V.back().topLeftCorner(one.rows, one.rows);
     const auto here = r.segment(system.first_row(k), one.rows);
     whole += block.trace();
@@ -104,16 +107,17 @@ struct ResidualShape {
 
 class ShapeStatistics {
  public:
-  ShapeStatistics(const RecordingProblem& problem, const RecordingSystem& system,
-                  const FitProjection& P)
+  ShapeStatistics(const estimation::RecordingProblem& problem,
+                  const estimation::RecordingSystem& system, const fitting::FitProjection& P)
       : problem_(problem), system_(system) {
     std::size_t last = problem.measurements.size();
     for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
-      const Measurement& one = problem.measurements[k];
+      const estimation::Measurement& one = problem.measurements[k];
       add_measurement(k, one, P);
-      if (!is_segment(one) || P.left_out(k)) continue;
+      if (!estimation::is_segment(one) || P.left_out(k)) continue;
       double path = 0.0;
-      for (const SegmentRow& row : problem.segments[one.source]) path += std::abs(row.path);
+      for (const estimation::SegmentRow& row : problem.segments[one.source])
+        path += std::abs(row.path);
       if (path < kLeastDrive) continue;
       const bool follows =
           last < problem.measurements.size() && problem.measurements[last].session == one.session;
@@ -161,9 +165,10 @@ class ShapeStatistics {
     Eigen::MatrixXd root;  ///< whitens what of the measurement is checked
   };
 
-  void add_measurement(std::size_t k, const Measurement& one, const FitProjection& P) {
+  void add_measurement(std::size_t k, const estimation::Measurement& one,
+                       const fitting::FitProjection& P) {
     if (P.left_out(k)) return;
-    const SymmetricModes axes = symmetric_modes(P.own_block(k));
+    const linalg::SymmetricModes axes = linalg::symmetric_modes(P.own_block(k));
     redundancy_ += axes.eigenvalues.head(one.rows).sum();
     Eigen::Index checked = 0;
     for (Eigen::Index a = 0; a < one.rows; ++a) checked += axes.eigenvalues[a] > kUnchecked;
@@ -175,8 +180,8 @@ class ShapeStatistics {
     standardised_.push_back(std::move(result));
   }
 
-  const RecordingProblem& problem_;
-  const RecordingSystem& system_;
+  const estimation::RecordingProblem& problem_;
+  const estimation::RecordingSystem& system_;
   std::vector<Standardised> standardised_;
   double redundancy_ = 0.0;
   std::vector<std::pair<std::size_t, std::size_t>> successive_;
@@ -197,8 +202,9 @@ NoiseTest shape_test(const char* name, double found, const Eigen::VectorXd& draw
 }
 
 /// Against residuals drawn under the same fit.
-void test_shapes(const FitState& fit, const NoiseLikelihood& under, std::vector<NoiseTest>& tests) {
-  const FitProjection P(fit, under.problem(), under.system(), under.nuisance());
+void test_shapes(const fitting::FitState& fit, const NoiseLikelihood& under,
+                 std::vector<NoiseTest>& tests) {
+  const fitting::FitProjection P(fit, under.problem(), under.system(), under.nuisance());
   const ShapeStatistics statistics(under.problem(), under.system(), P);
   if (statistics.redundancy() < kFewest) return;
   std::mt19937_64 random(2);
@@ -253,11 +259,11 @@ NoiseTest test_of(const NoiseLaw& law, const LawScore& score, NoiseLikelihood& l
 }
 
 /// Each by itself; `apart`: a basis of what is not to be taken for noise.
-std::vector<TestedLaw> test_laws(const FitState& fit, const ScoreTest& tests,
+std::vector<TestedLaw> test_laws(const fitting::FitState& fit, const ScoreTest& tests,
                                  const Eigen::MatrixXd& apart, NoiseLikelihood& likelihood) {
-  const RecordingProblem& problem = fit.problem;
-  const RecordingSystem& system = tests.system();
-  const FitProjection P(fit, problem, system, apart, tests.fitted_rows());
+  const estimation::RecordingProblem& problem = fit.problem;
+  const estimation::RecordingSystem& system = tests.system();
+  const fitting::FitProjection P(fit, problem, system, apart, tests.fitted_rows());
   std::vector<Eigen::MatrixXd> own;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) own.push_back(P.own_block(k));
   const Eigen::MatrixXd probes = P.times(random_signs(system.rows()));
@@ -276,17 +282,18 @@ void adjust_p(std::vector<NoiseTest>& tests) {
   std::vector<double> p_values;
   p_values.reserve(tests.size());
   for (const NoiseTest& test : tests) p_values.push_back(test.p_value);
-  const std::vector<double> adjusted = holm(p_values);
+  const std::vector<double> adjusted = statistics::holm(p_values);
   for (std::size_t k = 0; k < tests.size(); ++k) tests[k].p_adjusted = adjusted[k];
 }
 
 }  // namespace
 
-std::vector<NoiseTest> test_noise_laws(const FitState& fit, const ScoreTest& tests,
+std::vector<NoiseTest> test_noise_laws(const fitting::FitState& fit, const ScoreTest& tests,
                                        const Eigen::MatrixXd& nuisance) {
   tests.forget();
-  const Eigen::MatrixXd apart = nuisance.cols() > 0 ? orthonormal_basis(nuisance, kSameDirection)
-                                                    : Eigen::MatrixXd(tests.system().rows(), 0);
+  const Eigen::MatrixXd apart = nuisance.cols() > 0
+                                    ? linalg::orthonormal_basis(nuisance, fitting::kSameDirection)
+                                    : Eigen::MatrixXd(tests.system().rows(), 0);
   NoiseLikelihood likelihood(fit, apart);
   const std::vector<TestedLaw> laws = test_laws(fit, tests, apart, likelihood);
   std::vector<NoiseTest> result;
@@ -316,16 +323,17 @@ std::vector<NoiseTest> test_noise_laws(const FitState& fit, const ScoreTest& tes
   return sorted;
 }
 
-FitState with_noise(const FitState& fit, const ScoreTest& tests, const NoiseTest& law) {
+fitting::FitState with_noise(const fitting::FitState& fit, const ScoreTest& tests,
+                             const NoiseTest& law) {
   for (const NoiseLaw& one : noise_laws(fit, tests.context())) {
     if (one.name != law.law) continue;
     NoiseLikelihood likelihood(fit, {});
     static_cast<void>(likelihood.deviance(one, law.size * law.size));
-    FitState result = fit;
+    fitting::FitState result = fit;
     result.problem = likelihood.problem();
     return result;
   }
   throw std::invalid_argument("'" + law.law + "' is no law of noise of this recording");
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

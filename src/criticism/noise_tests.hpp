@@ -46,17 +46,18 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// All laws that the recordings could show, best explanation first. `nuisance`: projected columns
 /// (of Score or EventTest) of what else may be missing, which is left out of the question. Costs
 /// some hundred solves, and some 4 factorisations for each law of which p < 0.01.
-[[nodiscard]] std::vector<NoiseTest> test_noise_laws(const FitState& fit, const ScoreTest& tests,
+[[nodiscard]] std::vector<NoiseTest> test_noise_laws(const fitting::FitState& fit,
+                                                     const ScoreTest& tests,
                                                      const Eigen::MatrixXd& nuisance = {});
 
 /// The same fit, its measurements as noisy as one of these laws has them besides. Throws
 /// std::invalid_argument on a shape of noise.
-[[nodiscard]] FitState with_noise(const FitState& fit, const ScoreTest& tests,
-                                  const NoiseTest& law);
+[[nodiscard]] fitting::FitState with_noise(const fitting::FitState& fit, const ScoreTest& tests,
+                                           const NoiseTest& law);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -14,6 +14,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace criticism;
+
 namespace {
 
 /// A channel that has been found to differ.
@@ -76,7 +78,7 @@ class FieldSearch {
     if (scores_.patches.empty()) return;
     Eigen::MatrixXd G = all_.part(first_of(channel), scores_.count()).G;
     G.diagonal().array() += 1e-3 * G.diagonal().maxCoeff();
-    const DenseCholesky factor(G);
+    const linalg::DenseCholesky factor(G);
     for (std::size_t k = 0; k < scores_.patches.size(); ++k) {
       const auto count = static_cast<Eigen::Index>(scores_.patches[k].shape.size());
       const Eigen::MatrixXd with = all_.G.block(first_of(channel), column, scores_.count(), count);
@@ -281,8 +283,12 @@ double FieldOfPlaces::most() const {
   return largest;
 }
 
+}  // namespace trussmap
+
+namespace trussmap::criticism {
+
 std::vector<FieldOfPlaces> place_fields(const PlaceScores& scores, double level) {
   return FieldSearch(scores, level).run();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -24,7 +24,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// p below which a field is told: it is asked beside all else.
 inline constexpr double kFieldLevel = 0.01;
@@ -33,4 +33,4 @@ inline constexpr double kFieldLevel = 0.01;
 [[nodiscard]] std::vector<FieldOfPlaces> place_fields(const PlaceScores& scores,
                                                       double level = kFieldLevel);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

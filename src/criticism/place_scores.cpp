@@ -14,16 +14,16 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
-using Instant = ShapeContext::Instant;
+using Instant = fitting::ShapeContext::Instant;
 
 constexpr double kFinest = 28.0;  // cells along the longer side
 constexpr std::size_t kMostNodes = 110;
 
 /// Rows of all sessions, shared out among all nodes of a grid.
-using SharedRows = std::vector<std::vector<RowShares>>;
+using SharedRows = std::vector<std::vector<fitting::RowShares>>;
 
 SquareGrid grid_over(const Area& area, double cell) {
   const Vector2 extent = area.high - area.low;
@@ -34,7 +34,7 @@ SquareGrid grid_over(const Area& area, double cell) {
 }
 
 /// A place among the four nodes about it.
-RowShares shares_at(const SquareGrid& grid, const Vector2& place) {
+fitting::RowShares shares_at(const SquareGrid& grid, const Vector2& place) {
   const Vector2 at = (place - grid.low) / grid.cell;
   // A middle may lie a little beyond all ends, which the grid is over.
   const double u = std::clamp(at.x(), 0.0, static_cast<double>(grid.columns - 1));
@@ -50,13 +50,13 @@ RowShares shares_at(const SquareGrid& grid, const Vector2& place) {
           {(1.0 - a) * (1.0 - b), a * (1.0 - b), (1.0 - a) * b, a * b}};
 }
 
-SharedRows shared_out(const SquareGrid& grid, const ShapeContext& context, Instant at) {
+SharedRows shared_out(const SquareGrid& grid, const fitting::ShapeContext& context, Instant at) {
   SharedRows result;
   for (std::size_t s = 0; s < context.recordings().size(); ++s) {
     const RowVariables& variables = context.variables(s, at);
     const std::vector<double>& x = variables.at("x");
     const std::vector<double>& y = variables.at("y");
-    std::vector<RowShares>& rows = result.emplace_back();
+    std::vector<fitting::RowShares>& rows = result.emplace_back();
     rows.reserve(x.size());
     for (std::size_t row = 0; row < x.size(); ++row) {
       rows.push_back(shares_at(grid, Vector2(x[row], y[row])));
@@ -66,7 +66,7 @@ SharedRows shared_out(const SquareGrid& grid, const ShapeContext& context, Insta
 }
 
 /// Where the robot was, every so often.
-std::vector<Vector2> places_driven(const ShapeContext& context, double apart) {
+std::vector<Vector2> places_driven(const fitting::ShapeContext& context, double apart) {
   std::vector<Vector2> places;
   for (std::size_t s = 0; s < context.recordings().size(); ++s) {
     const RowVariables& variables = context.variables(s, Instant::middle);
@@ -84,7 +84,7 @@ std::vector<Vector2> places_driven(const ShapeContext& context, double apart) {
 std::size_t nodes_about(const SquareGrid& grid, const std::vector<Vector2>& places) {
   std::vector<std::uint8_t> near(idx(grid.nodes()), 0);
   for (const Vector2& place : places) {
-    const RowShares about = shares_at(grid, place);
+    const fitting::RowShares about = shares_at(grid, place);
     for (std::size_t c = 0; c < 4; ++c) {
       if (about.share[c] > 0.0) near[idx(about.column[c])] = 1;
     }
@@ -93,7 +93,7 @@ std::size_t nodes_about(const SquareGrid& grid, const std::vector<Vector2>& plac
 }
 
 /// As fine as the number of nodes that the robot comes near allows.
-SquareGrid finest_grid(const Area& area, const ShapeContext& context) {
+SquareGrid finest_grid(const Area& area, const fitting::ShapeContext& context) {
   double cell = (area.high - area.low).maxCoeff() / kFinest;
   const std::vector<Vector2> places = places_driven(context, 0.5 * cell);
   while (nodes_about(grid_over(area, cell), places) > kMostNodes) cell *= 1.12;
@@ -106,7 +106,8 @@ struct WayNear {
   std::vector<double> within;
 };
 
-WayNear way_near(const SquareGrid& grid, const SharedRows& shares, const ShapeContext& context) {
+WayNear way_near(const SquareGrid& grid, const SharedRows& shares,
+                 const fitting::ShapeContext& context) {
   const std::size_t nodes = idx(grid.nodes());
   WayNear way{std::vector<double>(nodes, 0.0), std::vector<double>(nodes, 0.0)};
   for (std::size_t s = 0; s < shares.size(); ++s) {
@@ -150,8 +151,8 @@ SharedRows among_kept(SharedRows shares, const PlaceScores& scores) {
   for (std::size_t k = 0; k < scores.nodes.size(); ++k) {
     place[idx(scores.grid.index_of(scores.nodes[k]))] = static_cast<int>(k);
   }
-  for (std::vector<RowShares>& session : shares) {
-    for (RowShares& row : session) {
+  for (std::vector<fitting::RowShares>& session : shares) {
+    for (fitting::RowShares& row : session) {
       for (std::size_t c = 0; c < 4; ++c) {
         row.column[c] = place[idx(row.column[c])];
         if (row.column[c] < 0) row.share[c] = 0.0;
@@ -167,18 +168,18 @@ bool can_show(Channel channel, const Eigen::MatrixXd& G, double dispersion) {
   return G.diagonal().maxCoeff() * sd * sd > dispersion;
 }
 
-std::vector<Channel> channels_seen_in(const FitState& fit) {
+std::vector<Channel> channels_seen_in(const fitting::FitState& fit) {
   std::vector<Channel> result;
   for (const Channel one : {Channel::travel, Channel::turn, Channel::creep, Channel::compass}) {
-    if (!is_of_drive(one, fit.model.robot)) continue;
-    if (one == Channel::compass && !noises_in(fit.problem).contains("compass")) continue;
+    if (!effects::is_of_drive(one, fit.model.robot)) continue;
+    if (one == Channel::compass && !fitting::noises_in(fit.problem).contains("compass")) continue;
     result.push_back(one);
   }
   return result;
 }
 
-void append_to(SparseMatrix& M, const SparseMatrix& more) {
-  SparseMatrix all(more.rows(), M.cols() + more.cols());
+void append_to(linalg::SparseMatrix& M, const linalg::SparseMatrix& more) {
+  linalg::SparseMatrix all(more.rows(), M.cols() + more.cols());
   all.leftCols(M.cols()) = M;
   all.rightCols(more.cols()) = more;
   M.swap(all);
@@ -204,7 +205,7 @@ void keep_shown(double dispersion, PlaceScores& scores) {
 
 }  // namespace
 
-std::optional<PlaceScores> place_scores(const FitState& fit, const ScoreTest& tests,
+std::optional<PlaceScores> place_scores(const fitting::FitState& fit, const ScoreTest& tests,
                                         const std::vector<Effect>& patches) {
   constexpr std::size_t kFewestNodes = 8;
   if (fit.paths.empty() || fit.adjustment.dof <= 0) return std::nullopt;
@@ -218,12 +219,12 @@ std::optional<PlaceScores> place_scores(const FitState& fit, const ScoreTest& te
   scores.channels = channels_seen_in(fit);
   scores.patches = patches;
   middles = among_kept(std::move(middles), scores);
-  SparseMatrix M(tests.residuals().size(), 0);
+  linalg::SparseMatrix M(tests.residuals().size(), 0);
   for (const Channel channel : scores.channels) {
     const auto count = static_cast<int>(scores.count());
     append_to(
         M,
-        acts_on(channel) == ActsOn::readings
+        effects::acts_on(channel) == effects::ActsOn::readings
             ? tests.cut_column(
                   channel,
                   among_kept(shared_out(scores.grid, tests.context(), Instant::end), scores), count)
@@ -240,4 +241,4 @@ std::optional<PlaceScores> place_scores(const FitState& fit, const ScoreTest& te
   return scores;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -16,7 +16,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 struct PlaceScores {
   SquareGrid grid;
@@ -35,7 +35,8 @@ struct PlaceScores {
 
 /// Of travel, turn, creep and compass, as far as these recordings can show them; nothing where the
 /// robot hardly left its place. `tests`: of this fit, perhaps conditioned on what else there is.
-[[nodiscard]] std::optional<PlaceScores> place_scores(const FitState& fit, const ScoreTest& tests,
+[[nodiscard]] std::optional<PlaceScores> place_scores(const fitting::FitState& fit,
+                                                      const ScoreTest& tests,
                                                       const std::vector<Effect>& patches);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

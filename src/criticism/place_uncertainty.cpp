@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kStep = 0.125;  // of the search's: rows have to change sides of an edge
@@ -54,13 +54,14 @@ std::vector<double> widening(const ScoreTest& tests, const Candidate& found,
   }
   Eigen::MatrixXd left = tests.free_of_map(all);
   if (others.cols() > 0) {
-    const Eigen::MatrixXd basis = orthonormal_basis(others);
+    const Eigen::MatrixXd basis = linalg::orthonormal_basis(others);
     left -= (basis * (basis.transpose() * left)).eval();
   }
   Eigen::MatrixXd information = left.transpose() * left;
-  const Eigen::MatrixXd known = DenseLdlt(information.topLeftCorner(count, count)).inverse();
+  const Eigen::MatrixXd known =
+      linalg::DenseLdlt(information.topLeftCorner(count, count)).inverse();
   information.diagonal() += prior;
-  const Eigen::MatrixXd joint = DenseLdlt(information).inverse();
+  const Eigen::MatrixXd joint = linalg::DenseLdlt(information).inverse();
   for (Eigen::Index k = 0; k < count; ++k) {
     const double factor = std::sqrt(joint(k, k) / known(k, k));
     if (std::isfinite(factor)) result[static_cast<std::size_t>(k)] = std::max(1.0, factor);
@@ -77,7 +78,7 @@ void widen_for_places(ModelFit& fit, const std::vector<Candidate>& found) {
     Eigen::MatrixXd others(tests.system().rows(), 0);
     for (std::size_t other = 0; other < found.size(); ++other) {
       if (other == k) continue;
-      append_columns(others, tests.free_of_map(tests.columns(fit.model.effects[other])));
+      linalg::append_columns(others, tests.free_of_map(tests.columns(fit.model.effects[other])));
     }
     EffectEstimate& estimate = fit.effects[k];
     const std::vector<double> factors =
@@ -86,4 +87,4 @@ void widen_for_places(ModelFit& fit, const std::vector<Candidate>& found) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -15,7 +15,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// By what the standard errors of an effect's coefficients grow for the uncertainty of its
 /// parameters, each at least 1; all 1 where it has none. `others`: columns, less what the map
@@ -28,4 +28,4 @@ namespace trussmap {
 /// per effect, empty for those that were not.
 void widen_for_places(ModelFit& fit, const std::vector<Candidate>& found);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr int kQuickRounds = 10;
@@ -70,13 +70,14 @@ std::vector<ShapeParameter> written(const Candidate& one) {
   const Vector2 along(std::cos(angle), std::sin(angle));
   if (one.writing == Writing::line) {
     constexpr double kShortest = 1.0;  // of a normal's axes
-    const double a = rounded_within(along.x(), kShortest);
-    const double b = rounded_within(along.y(), kShortest);
+    const double a = text::rounded_within(along.x(), kShortest);
+    const double b = text::rounded_within(along.y(), kShortest);
     const double c = size + one.pivot.dot(Vector2(a, b));
-    return {{"a", a}, {"b", b}, {"c", rounded_within(c, kShortest)}};
+    return {{"a", a}, {"b", b}, {"c", text::rounded_within(c, kShortest)}};
   }
   const double k = 2.0 * std::numbers::pi / size;
-  return {{"kx", rounded_within(k * along.x(), k)}, {"ky", rounded_within(k * along.y(), k)}};
+  return {{"kx", text::rounded_within(k * along.x(), k)},
+          {"ky", text::rounded_within(k * along.y(), k)}};
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ std::vector<ShapeParameter> written(const Candidate& one) {
 Candidate with_parameters(const Candidate& candidate, const std::vector<double>& values) {
   Candidate one = candidate;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    one.parameters[k].value = rounded_within(values[k], candidate.search[k].step);
+    one.parameters[k].value = text::rounded_within(values[k], candidate.search[k].step);
   }
   if (one.form == Form::catalogue) {
     one.effect = catalogue_effect(*find_entry(candidate.effect.name), one.parameters);
@@ -105,4 +106,4 @@ Candidate refined(const ScoreTest& tests, const Candidate& candidate) {
   return climbed(tests, near, steps_of(candidate, 0.0625), kExactRounds, Resolution::exact);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

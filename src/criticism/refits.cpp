@@ -7,13 +7,13 @@
 
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 ModelFit refit_with(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                     const std::vector<Effect>& effects) {
   Model model = fit.model;
   model.effects.insert(model.effects.end(), effects.begin(), effects.end());
-  return refit(recordings, model, fit);
+  return fitting::refit(recordings, model, fit);
 }
 
 std::optional<ModelFit> if_fitted_with(const std::vector<DrivenRecording>& recordings,
@@ -29,14 +29,14 @@ std::optional<ModelFit> refit_by(const std::vector<DrivenRecording>& recordings,
                                  const ModelFit& fit, std::vector<Effect> effects) {
   Model model = fit.model;
   model.effects = std::move(effects);
-  return if_possible<ModelFit>([&] { return refit(recordings, model, fit); });
+  return if_possible<ModelFit>([&] { return fitting::refit(recordings, model, fit); });
 }
 
 ModelFit refit_under(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                      const Noise& noise) {
   Model model = fit.model;
   model.noise = noise;
-  return refit(recordings, model, fit);
+  return fitting::refit(recordings, model, fit);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

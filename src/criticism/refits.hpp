@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// With these effects in the model, after its own.
 [[nodiscard]] ModelFit refit_with(const std::vector<DrivenRecording>& recordings,
@@ -46,4 +46,4 @@ template <class Result>
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

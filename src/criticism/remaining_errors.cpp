@@ -11,7 +11,7 @@
 #include <iterator>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 /// A fit, and columns beside it that are taken as given.
@@ -21,7 +21,7 @@ struct Asked {
 
   [[nodiscard]] Eigen::MatrixXd nuisance(const ScoreTest& tests) const {
     Eigen::MatrixXd columns(tests.system().rows(), 0);
-    for (const Score& one : tests.test(beside)) append_columns(columns, one.projected);
+    for (const Score& one : tests.test(beside)) linalg::append_columns(columns, one.projected);
     return columns;
   }
 };
@@ -63,4 +63,4 @@ std::vector<NoiseTest> noise_beyond(const std::vector<DrivenRecording>& recordin
   return laws_of(with_noise_as(recordings, stated, {fit, {}}));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 struct RemainingErrors {
   std::vector<EventTest> events;  ///< likeliest first
@@ -37,4 +37,4 @@ struct RemainingErrors {
 [[nodiscard]] std::vector<NoiseTest> noise_beyond(const std::vector<DrivenRecording>& recordings,
                                                   const ModelFit& fit, const Noise& stated);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr int kCurvePoints = 73;
@@ -25,15 +25,15 @@ constexpr int kCurvePoints = 73;
 std::optional<Shape> formula_of(const std::string& variable, const Effect& effect) {
   if (variable.empty()) return std::nullopt;
   if (variable != kPlace) return Shape(variable);
-  const std::optional<Vector2> place = place_of(effect);
+  const std::optional<Vector2> place = effects::place_of(effect);
   if (!place) return std::nullopt;
-  return Shape(kDistancePattern, {{"x", place->x()}, {"y", place->y()}});
+  return Shape(effects::kDistancePattern, {{"x", place->x()}, {"y", place->y()}});
 }
 
 /// Least squares by the modes that the data show; bins that no measurement sees are dropped.
 /// `traces`: what rivals leave in the measurements, estimated in the same way. `rows`: those that
 /// count; empty: all.
-void estimate(Response& response, const Score& score, double prior_sd, const FitState& fit,
+void estimate(Response& response, const Score& score, double prior_sd, const fitting::FitState& fit,
               const ScoreTest& tests, const Eigen::MatrixXd& traces, const Eigen::VectorXd& rows) {
   std::vector<ResponseBin>& bins = response.bins;
   const bool all = rows.size() == 0;
@@ -41,7 +41,7 @@ void estimate(Response& response, const Score& score, double prior_sd, const Fit
       all ? Eigen::MatrixXd() : Eigen::MatrixXd(rows.asDiagonal() * score.projected);
   const Eigen::MatrixXd& M = all ? score.projected : some;
   const Eigen::MatrixXd S = M.transpose() * M;
-  const SymmetricModes modes = symmetric_modes(S);
+  const linalg::SymmetricModes modes = linalg::symmetric_modes(S);
   const double least =
       9.0 * tests.dispersion() / (prior_sd * prior_sd * static_cast<double>(bins.size()));
   const Eigen::VectorXd g = modes.eigenvectors.transpose() * (M.transpose() * tests.residuals());
@@ -96,13 +96,13 @@ Eigen::MatrixXd traces_of(const std::vector<Effect>& effects, const ScoreTest& t
 
 const ShapeRanges::Values& ShapeRanges::values(const Shape& shape) {
   const auto [at, fresh] = values_.try_emplace(shape);
-  if (fresh) at->second = context_.values(shape, ShapeContext::Instant::middle);
+  if (fresh) at->second = context_.values(shape, fitting::ShapeContext::Instant::middle);
   return at->second;
 }
 
 EffectRange ShapeRanges::of(const Effect& effect) {
   const std::size_t sessions = context_.recordings().size();
-  const std::vector<double> coefficients = coefficients_of(effect, sessions);
+  const std::vector<double> coefficients = fitting::coefficients_of(effect, sessions);
   EffectRange range;
   bool first = true;
   std::vector<const Values*> shapes;
@@ -124,7 +124,7 @@ EffectRange ShapeRanges::of(const Effect& effect) {
   return range;
 }
 
-EffectRange range_of(const Effect& effect, const ShapeContext& context) {
+EffectRange range_of(const Effect& effect, const fitting::ShapeContext& context) {
   return ShapeRanges(context).of(effect);
 }
 
@@ -136,7 +136,7 @@ std::string natural_variable(const Effect& effect) {
   names.erase("session");
   if (names.contains("x") || names.contains("y")) return {};
   if (!names.empty()) return *names.begin();
-  return std::string(record_of(effect.channel).drawn_against);
+  return std::string(effects::record_of(effect.channel).drawn_against);
 }
 
 std::vector<Vector2> effect_curve(const Effect& effect, const std::string& variable, double low,
@@ -148,7 +148,8 @@ std::vector<Vector2> effect_curve(const Effect& effect, const std::string& varia
   std::vector<Vector2> curve;
   curve.reserve(at.size());
   for (const double value : at) curve.emplace_back(value, 0.0);
-  const std::optional<Vector2> place = variable == kPlace ? place_of(effect) : std::nullopt;
+  const std::optional<Vector2> place =
+      variable == kPlace ? effects::place_of(effect) : std::nullopt;
   RowVariables variables;
   if (place) {
     for (const double value : at) variables["x"].push_back(place->x() + value);
@@ -186,16 +187,16 @@ std::vector<Vector2> levelled(std::vector<Vector2> curve, const Effect& effect,
     off.push_back(bin.y() - here.front().y());
   }
   // The median: a bin across a step has a mean of both sides.
-  const double shift = median(std::move(off));
+  const double shift = statistics::median(std::move(off));
   for (Vector2& point : curve) point.y() += shift;
   return curve;
 }
 
 }  // namespace
 
-Response response_along(const std::string& variable, const Effect& effect, const FitState& fit,
-                        const ScoreTest& tests, const std::vector<Effect>& rivals,
-                        const Eigen::VectorXd& rows) {
+Response response_along(const std::string& variable, const Effect& effect,
+                        const fitting::FitState& fit, const ScoreTest& tests,
+                        const std::vector<Effect>& rivals, const Eigen::VectorXd& rows) {
   const ChannelFacts& facts = facts_of(effect.channel);
   Response result;
   result.channel = effect.channel;
@@ -219,7 +220,7 @@ Response response_along(const std::string& variable, const Effect& effect, const
   if (result.bins.empty()) return result;
   const bool round = variable == "heading";
   const double low = round || variable == kPlace ? 0.0 : result.bins.front().at;
-  const double high = round ? kFullTurn : result.bins.back().at;
+  const double high = round ? geometry::kFullTurn : result.bins.back().at;
   result.curve = levelled(effect_curve(effect, variable, low, high), effect, variable, projected);
   for (std::size_t k = 0; k < rivals.size(); ++k) {
     if (rivals[k].channel != effect.channel || variable == kPlace) continue;
@@ -230,4 +231,4 @@ Response response_along(const std::string& variable, const Effect& effect, const
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

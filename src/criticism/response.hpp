@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// The variable that shows an effect best: the one that its shapes name; for a constant, turn rate
 /// or speed, whichever the channel acts with. Empty for a place.
@@ -31,25 +31,25 @@ namespace trussmap {
 /// coefficients, if it has any. What the tests are conditioned on is not in the picture. `rows`: of
 /// each row of the fit's system 1 where bins are to show it, else 0; empty: all.
 [[nodiscard]] Response response_along(const std::string& variable, const Effect& effect,
-                                      const FitState& fit, const ScoreTest& tests,
+                                      const fitting::FitState& fit, const ScoreTest& tests,
                                       const std::vector<Effect>& rivals = {},
                                       const Eigen::VectorXd& rows = {});
 
 /// Least and largest g of an effect over all rows in which the robot moves.
-[[nodiscard]] EffectRange range_of(const Effect& effect, const ShapeContext& context);
+[[nodiscard]] EffectRange range_of(const Effect& effect, const fitting::ShapeContext& context);
 
 /// The same for many effects, each shape evaluated once.
 class ShapeRanges {
  public:
   /// Keeps a reference.
-  explicit ShapeRanges(const ShapeContext& context) : context_(context) {}
+  explicit ShapeRanges(const fitting::ShapeContext& context) : context_(context) {}
   [[nodiscard]] EffectRange of(const Effect& effect);
 
  private:
   using Values = std::vector<std::vector<double>>;  ///< per session and row
   const Values& values(const Shape& shape);
 
-  const ShapeContext& context_;
+  const fitting::ShapeContext& context_;
   std::map<Shape, Values> values_;
 };
 
@@ -57,4 +57,4 @@ class ShapeRanges {
 [[nodiscard]] std::vector<Vector2> effect_curve(const Effect& effect, const std::string& variable,
                                                 double low, double high);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

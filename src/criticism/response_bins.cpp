@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr std::size_t kBins = 9;
@@ -17,19 +17,20 @@ constexpr int kHeadingBins = 12;
 constexpr std::size_t kFewValues = 9;
 
 double in_one_turn(double heading) {
-  const double rest = std::fmod(heading, kFullTurn);
-  return rest < 0.0 ? rest + kFullTurn : rest;
+  const double rest = std::fmod(heading, geometry::kFullTurn);
+  return rest < 0.0 ? rest + geometry::kFullTurn : rest;
 }
 
 /// A formula in all rows in which a wheel turns, in order.
-std::vector<double> values_of(const Shape& formula, const FitState& fit, const ScoreTest& tests) {
+std::vector<double> values_of(const Shape& formula, const fitting::FitState& fit,
+                              const ScoreTest& tests) {
   for (std::size_t s = 0; s < fit.recordings.size(); ++s) {
-    const RowVariables& rows = tests.context().variables(s, ShapeContext::Instant::middle);
+    const RowVariables& rows = tests.context().variables(s, fitting::ShapeContext::Instant::middle);
     for (const std::string& name : formula.variables()) {
       if (!rows.contains(name)) return {};
     }
   }
-  const auto all = tests.context().values(formula, ShapeContext::Instant::middle);
+  const auto all = tests.context().values(formula, fitting::ShapeContext::Instant::middle);
   std::vector<double> values;
   for (std::size_t s = 0; s < fit.recordings.size(); ++s) {
     const MotionRows& drive = fit.recordings[s].drive;
@@ -81,13 +82,13 @@ std::vector<double> edges_of(const std::vector<double>& values, bool from_place)
 
 Bins heading_bins(const std::vector<double>& values) {
   Bins result;
-  const double width = kFullTurn / kHeadingBins;
+  const double width = geometry::kFullTurn / kHeadingBins;
   for (int k = 0; k < kHeadingBins; ++k) {
     const double middle = k * width;
     double sum = 0.0;
     int count = 0;
     for (const double value : values) {
-      const double off = std::remainder(value - middle, kFullTurn);
+      const double off = std::remainder(value - middle, geometry::kFullTurn);
       if (std::abs(off) > 0.5 * width) continue;
       sum += off;
       ++count;
@@ -124,9 +125,10 @@ Bins bins_of(const Shape& variable, const std::vector<double>& values, bool from
 
 }  // namespace
 
-Bins bins_of(const Shape& formula, const FitState& fit, const ScoreTest& tests, bool from_place) {
+Bins bins_of(const Shape& formula, const fitting::FitState& fit, const ScoreTest& tests,
+             bool from_place) {
   const std::vector<double> values = values_of(formula, fit, tests);
   return values.empty() ? Bins() : bins_of(formula, values, from_place);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

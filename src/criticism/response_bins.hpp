@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 struct Bins {
   std::vector<ResponseBin> bins;  ///< without estimates
@@ -20,7 +20,7 @@ struct Bins {
 /// Of a formula: equally many rows in each, one per value where there are few; of the heading,
 /// twelve directions; of a distance from a place finer near it. None where the recordings lack a
 /// variable, or it does not vary.
-[[nodiscard]] Bins bins_of(const Shape& formula, const FitState& fit, const ScoreTest& tests,
-                           bool from_place);
+[[nodiscard]] Bins bins_of(const Shape& formula, const fitting::FitState& fit,
+                           const ScoreTest& tests, bool from_place);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -4,15 +4,15 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
-ScoreInformation ScoreTest::information(const SparseMatrix& M) const {
+ScoreInformation ScoreTest::information(const linalg::SparseMatrix& M) const {
   constexpr Eigen::Index kAtOnce = 128;
-  const SparseMatrix J = clean_system_->rows_by_nodes();
-  const SparseMatrix B = J.transpose() * M;
-  const SparseMatrix Bt = B.transpose();
+  const linalg::SparseMatrix J = clean_system_->rows_by_nodes();
+  const linalg::SparseMatrix B = J.transpose() * M;
+  const linalg::SparseMatrix Bt = B.transpose();
   ScoreInformation result;
-  result.G = Eigen::MatrixXd(SparseMatrix(M.transpose() * M));
+  result.G = Eigen::MatrixXd(linalg::SparseMatrix(M.transpose() * M));
   for (Eigen::Index first = 0; first < M.cols(); first += kAtOnce) {
     const Eigen::Index count = std::min(kAtOnce, M.cols() - first);
     const Eigen::MatrixXd some = B.middleCols(first, count);
@@ -25,4 +25,4 @@ ScoreInformation ScoreTest::information(const SparseMatrix& M) const {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

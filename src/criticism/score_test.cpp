@@ -13,7 +13,7 @@
 #include <span>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -33,31 +33,34 @@ Eigen::MatrixXd free_of(const Eigen::MatrixXd& present, Eigen::MatrixXd M) {
 /// Whether its shapes speak of what a second's middle says nothing about.
 bool changes_within_a_second(const Effect& effect) {
   return std::any_of(effect.shape.begin(), effect.shape.end(), [](const Shape& shape) {
-    return std::any_of(
-        shape.variables().begin(), shape.variables().end(),
-        [](const std::string& name) { return is_event(name) || name == "acceleration"; });
+    return std::any_of(shape.variables().begin(), shape.variables().end(),
+                       [](const std::string& name) {
+                         return recording::is_event(name) || name == "acceleration";
+                       });
   });
 }
 
 }  // namespace
 
-ScoreTest::ScoreTest(const FitState& fit)
+ScoreTest::ScoreTest(const fitting::FitState& fit)
     : fit_(fit),
-      clean_(std::make_shared<NoiseFree>(fit.recordings, fit.model, fit.problem, fit.columns.border,
-                                         offsets_of(fit), fit.adjustment.state)),
-      system_(std::make_shared<RecordingSystem>(fit.problem, fit.columns.border)),
-      clean_system_(std::make_shared<RecordingSystem>(clean_->problem, clean_->border)) {
+      clean_(std::make_shared<fitting::NoiseFree>(fit.recordings, fit.model, fit.problem,
+                                                  fit.columns.border, fitting::offsets_of(fit),
+                                                  fit.adjustment.state)),
+      system_(std::make_shared<estimation::RecordingSystem>(fit.problem, fit.columns.border)),
+      clean_system_(
+          std::make_shared<estimation::RecordingSystem>(clean_->problem, clean_->border)) {
   const std::vector<double> weights =
-      weights_without(fit.adjustment.left_out, fit.problem.measurements.size());
-  for (RecordingSystem* system : {system_.get(), clean_system_.get()}) {
+      estimation::weights_without(fit.adjustment.left_out, fit.problem.measurements.size());
+  for (estimation::RecordingSystem* system : {system_.get(), clean_system_.get()}) {
     system->set_weights(weights);
     system->linearise(system == system_.get() ? fit.adjustment.state : clean_->state,
                       fit.adjustment.coefficients);
     system->factorise();
   }
   builders_ = std::make_shared<Builders>(
-      Builders{ColumnBuilder(clean_->context, clean_->problem, clean_->border, offsets_of(fit),
-                             clean_->state, weights),
+      Builders{fitting::ColumnBuilder(clean_->context, clean_->problem, clean_->border,
+                                      fitting::offsets_of(fit), clean_->state, weights),
                std::nullopt});
   // Rows are not asked for again: of a week's drive they are a million.
   clean_->problem.segments = {};
@@ -81,8 +84,8 @@ Eigen::MatrixXd ScoreTest::projected(const Eigen::MatrixXd& M) const {
 bool ScoreTest::is_present(const Effect& effect) const {
   const Eigen::MatrixXd M = columns(effect);
   const Eigen::MatrixXd left = free_of_map(M);
-  return left.squaredNorm() > kLeastShare * M.squaredNorm() &&
-         free_of(present_, left).squaredNorm() <= kLeastShare * left.squaredNorm();
+  return left.squaredNorm() > fitting::kLeastShare * M.squaredNorm() &&
+         free_of(present_, left).squaredNorm() <= fitting::kLeastShare * left.squaredNorm();
 }
 
 void ScoreTest::condition_on(const Eigen::MatrixXd& columns) {
@@ -92,11 +95,11 @@ void ScoreTest::condition_on(const Eigen::MatrixXd& columns) {
   Eigen::Index kept = 0;
   for (Eigen::Index k = 0; k < left.cols(); ++k) {
     const double before = columns.col(k).squaredNorm();
-    if (left.col(k).squaredNorm() <= kLeastShare * before) continue;
+    if (left.col(k).squaredNorm() <= fitting::kLeastShare * before) continue;
     left.col(kept++) = left.col(k).normalized();
   }
   if (kept == 0) return;
-  const Eigen::MatrixXd basis = orthonormal_basis(left.leftCols(kept));
+  const Eigen::MatrixXd basis = linalg::orthonormal_basis(left.leftCols(kept));
   const Eigen::Index rank = basis.cols();
   const Eigen::Index had = present_.cols();
   present_.conservativeResize(Eigen::NoChange, had + rank);
@@ -113,7 +116,7 @@ ScoreTest ScoreTest::lacking(std::size_t first, const std::vector<Effect>& fitte
   }
   result.residuals_ = free_of_map(residuals);
   result.present_.resize(residuals_.size(), 0);
-  const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
+  const std::vector<int> unknown = estimation::unknown_coefficients(fit_.columns.border);
   Eigen::MatrixXd others(residuals_.size(), static_cast<Eigen::Index>(unknown.size()));
   Eigen::Index count = 0;
   for (std::size_t k = 0; k < unknown.size(); ++k) {
@@ -142,8 +145,8 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
     result.information.push_back(square);
     // What the data tell must not be less than the prior.
     const double uncertainty = most * std::sqrt(dispersion_ / std::max(square, 1e-300));
-    if (most > 0.0 && result.share.back() > kLeastShare &&
-        uncertainty < kLargestUncertainty * prior_sd) {
+    if (most > 0.0 && result.share.back() > fitting::kLeastShare &&
+        uncertainty < fitting::kLargestUncertainty * prior_sd) {
       seen.push_back(k);
     } else {
       projected.col(k).setZero();
@@ -165,15 +168,16 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
   const Eigen::VectorXd g = M.transpose() * residuals_;
   Eigen::MatrixXd with_prior = S;
   with_prior.diagonal() += prior;
-  const DenseLdlt factor(with_prior);
+  const linalg::DenseLdlt factor(with_prior);
   const Eigen::VectorXd estimate = -factor.solve(g);
   const Eigen::MatrixXd covariance = factor.inverse();
   result.score = std::max(0.0, -g.dot(estimate));
   // Shapes that are nearly the same count once.
   const Eigen::VectorXd scale = with_prior.diagonal().cwiseSqrt().cwiseInverse();
-  const SymmetricModes modes = symmetric_modes(scale.asDiagonal() * S * scale.asDiagonal());
+  const linalg::SymmetricModes modes =
+      linalg::symmetric_modes(scale.asDiagonal() * S * scale.asDiagonal());
   for (Eigen::Index k = 0; k < dof; ++k) result.dof += modes.eigenvalues[k] > 1e-6 ? 1 : 0;
-  result.p_value = chi2_p_value(result.score, result.dof);
+  result.p_value = statistics::chi2_p_value(result.score, result.dof);
   for (Eigen::Index k = 0; k < dof; ++k) {
     const auto place = static_cast<std::size_t>(seen[static_cast<std::size_t>(k)]);
     result.coefficients[place] = estimate[k];
@@ -184,7 +188,7 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
 }
 
 Eigen::MatrixXd ScoreTest::landmark_rows(const Eigen::MatrixXd& nodes) const {
-  const BlockSystem& normal = clean_system_->normal_equations();
+  const linalg::BlockSystem& normal = clean_system_->normal_equations();
   const Eigen::Index count = fit_.problem.landmark_count();
   const auto oriented = static_cast<Eigen::Index>(fit_.problem.oriented.size());
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * count + oriented, nodes.cols());
@@ -218,15 +222,15 @@ std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates,
   return scores;
 }
 
-std::vector<Score> ScoreTest::test_with(ColumnBuilder& builder,
+std::vector<Score> ScoreTest::test_with(fitting::ColumnBuilder& builder,
                                         const std::vector<Effect>& candidates) const {
-  const RecordingSystem& system = *clean_system_;
+  const estimation::RecordingSystem& system = *clean_system_;
   const std::size_t sessions = context().recordings().size();
   std::vector<Score> scores;
   for (std::size_t first = 0; first < candidates.size();) {
     std::size_t next = first;
     for (std::size_t count = 0; next < candidates.size() && count < idx(batch()); ++next) {
-      count += coefficient_count(candidates[next], sessions);
+      count += fitting::coefficient_count(candidates[next], sessions);
     }
     const std::span<const Effect> some = std::span(candidates).subspan(first, next - first);
     std::vector<Eigen::MatrixXd> parts = builder.columns(some);
@@ -242,7 +246,7 @@ std::vector<Score> ScoreTest::test_with(ColumnBuilder& builder,
     const Eigen::MatrixXd nodes = system.solve_nodes(system.transposed_times(M));
     system.subtract_times(nodes, M);
     scores.resize(next);
-    parallel_for(some.size(), [&](std::size_t k) {
+    parallel::parallel_for(some.size(), [&](std::size_t k) {
       const Eigen::Index shapes = parts[k].cols();
       Score& score = scores[first + k];
       score = score_of(some[k], largest[k], std::move(parts[k]),
@@ -254,8 +258,8 @@ std::vector<Score> ScoreTest::test_with(ColumnBuilder& builder,
   return scores;
 }
 
-std::shared_ptr<const FittedRows> ScoreTest::fitted_rows() const {
-  if (!fitted_) fitted_ = std::make_shared<const FittedRows>(*system_);
+std::shared_ptr<const estimation::FittedRows> ScoreTest::fitted_rows() const {
+  if (!fitted_) fitted_ = std::make_shared<const estimation::FittedRows>(*system_);
   return fitted_;
 }
 
@@ -271,11 +275,11 @@ Eigen::Index ScoreTest::batch() const {
 double ScoreTest::joint_score(const std::vector<Effect>& effects) const {
   Eigen::MatrixXd M(system_->rows(), 0);
   for (const Score& one : test(effects)) {
-    append_columns(M, one.projected);
+    linalg::append_columns(M, one.projected);
   }
   if (M.cols() == 0) return 0.0;
-  const Eigen::VectorXd nearest = least_squares(M, residuals_);
+  const Eigen::VectorXd nearest = linalg::least_squares(M, residuals_);
   return (M * nearest).squaredNorm();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

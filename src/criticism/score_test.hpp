@@ -32,7 +32,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 inline constexpr double kDetectableScore = 24.4;
 
@@ -66,7 +66,7 @@ struct ScoreInformation {
 class ScoreTest {
  public:
   /// Keeps a reference to the fit. A copy shares all but what it is conditioned on.
-  explicit ScoreTest(const FitState& fit);
+  explicit ScoreTest(const fitting::FitState& fit);
 
   /// The same of the model without some of its effects, from `first` on, to first order about this
   /// very fit: what they do there is put back into the residuals, and nothing of them is present. A
@@ -94,14 +94,14 @@ class ScoreTest {
   [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& M) const;
 
   /// A channel's whitened column cut in pieces, as ColumnBuilder::cut_column.
-  [[nodiscard]] SparseMatrix cut_column(Channel channel,
-                                        const std::vector<std::vector<RowShares>>& shares,
-                                        int count) const {
+  [[nodiscard]] linalg::SparseMatrix cut_column(
+      Channel channel, const std::vector<std::vector<fitting::RowShares>>& shares,
+      int count) const {
     return builders_->exact.cut_column(channel, shares, count);
   }
   /// Of whitened columns, without ever holding M_: its cost is a solution of the map's system for
   /// each.
-  [[nodiscard]] ScoreInformation information(const SparseMatrix& M) const;
+  [[nodiscard]] ScoreInformation information(const linalg::SparseMatrix& M) const;
 
   /// Whether the effect would be seen but for what is present: the model has it, or its like.
   [[nodiscard]] bool is_present(const Effect& effect) const;
@@ -119,13 +119,13 @@ class ScoreTest {
   /// Orthonormal columns that the model's effects, and what it is conditioned on, span.
   [[nodiscard]] const Eigen::MatrixXd& present() const { return present_; }
   /// At the fit itself, noise and all.
-  [[nodiscard]] const RecordingSystem& system() const { return *system_; }
+  [[nodiscard]] const estimation::RecordingSystem& system() const { return *system_; }
   /// What that fit knows of its rows.
-  [[nodiscard]] std::shared_ptr<const FittedRows> fitted_rows() const;
-  [[nodiscard]] const ShapeContext& context() const { return clean_->context; }
+  [[nodiscard]] std::shared_ptr<const estimation::FittedRows> fitted_rows() const;
+  [[nodiscard]] const fitting::ShapeContext& context() const { return clean_->context; }
 
  private:
-  [[nodiscard]] std::vector<Score> test_with(ColumnBuilder& builder,
+  [[nodiscard]] std::vector<Score> test_with(fitting::ColumnBuilder& builder,
                                              const std::vector<Effect>& candidates) const;
   [[nodiscard]] Score score_of(const Effect& effect, const std::vector<double>& largest,
                                Eigen::MatrixXd columns, Eigen::MatrixXd projected) const;
@@ -133,14 +133,14 @@ class ScoreTest {
   /// Rows of the landmarks, zero where held, then of orientations, among those of all nodes.
   [[nodiscard]] Eigen::MatrixXd landmark_rows(const Eigen::MatrixXd& nodes) const;
 
-  const FitState& fit_;
-  std::shared_ptr<NoiseFree> clean_;  ///< but for the rows of its problem
-  std::shared_ptr<RecordingSystem> system_;
-  mutable std::shared_ptr<const FittedRows> fitted_;  ///< made when first asked for
-  std::shared_ptr<RecordingSystem> clean_system_;
+  const fitting::FitState& fit_;
+  std::shared_ptr<fitting::NoiseFree> clean_;  ///< but for the rows of its problem
+  std::shared_ptr<estimation::RecordingSystem> system_;
+  mutable std::shared_ptr<const estimation::FittedRows> fitted_;  ///< made when first asked for
+  std::shared_ptr<estimation::RecordingSystem> clean_system_;
   struct Builders {
-    ColumnBuilder exact;
-    std::optional<ColumnBuilder> quick;  ///< made when first asked for
+    fitting::ColumnBuilder exact;
+    std::optional<fitting::ColumnBuilder> quick;  ///< made when first asked for
   };
   std::shared_ptr<Builders> builders_;
   Eigen::MatrixXd present_;  ///< orthonormal: what the model's effects span, projected
@@ -148,4 +148,4 @@ class ScoreTest {
   double dispersion_ = 1.0;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr std::size_t kMostSteps = 16;  // tried for one landmark in one session
@@ -20,7 +20,8 @@ constexpr double kLeastPath = 0.1;      // m
 
 class Collector {
  public:
-  Collector(const FitState& fit, const ScoreTest& tests, const FitProjection& projection)
+  Collector(const fitting::FitState& fit, const ScoreTest& tests,
+            const fitting::FitProjection& projection)
       : fit_(fit), problem_(fit.problem), tests_(tests), projection_(projection) {}
 
   std::vector<SingleEvent> run() {
@@ -33,7 +34,9 @@ class Collector {
   }
 
  private:
-  [[nodiscard]] const Measurement& at(std::size_t k) const { return problem_.measurements[k]; }
+  [[nodiscard]] const estimation::Measurement& at(std::size_t k) const {
+    return problem_.measurements[k];
+  }
 
   [[nodiscard]] std::string of_session(int session) const {
     return problem_.sessions.size() > 1 ? " of " + problem_.sessions[idx(session)] : std::string();
@@ -49,11 +52,11 @@ class Collector {
   void add_legs() {
     std::map<int, std::size_t> segment_from;
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-      if (is_segment(at(k))) segment_from[at(k).from] = k;
+      if (estimation::is_segment(at(k))) segment_from[at(k).from] = k;
     }
-    for (const LegSpan& leg : leg_spans(fit_)) {
-      const Measurement& from = at(leg.from);
-      const Measurement& to = at(leg.to);
+    for (const validation::LegSpan& leg : validation::leg_spans(fit_)) {
+      const estimation::Measurement& from = at(leg.from);
+      const estimation::Measurement& to = at(leg.to);
       const bool sighted = from.to >= 0 && to.to >= 0;
       const std::string between =
           sighted ? problem_.landmarks[idx(from.to)] + " -> " + problem_.landmarks[idx(to.to)]
@@ -65,7 +68,7 @@ class Collector {
       for (int node = from.from; node != to.from;) {
         const auto found = segment_from.find(node);
         if (found == segment_from.end()) break;
-        const Measurement& segment = at(found->second);
+        const estimation::Measurement& segment = at(found->second);
         node = segment.to;
         if (projection_.left_out(found->second)) continue;
         add_bumps(found->second, event.places);
@@ -76,13 +79,13 @@ class Collector {
 
   /// Motion beyond the record after some of a segment's rows: of one wheel, or any.
   void add_bumps(std::size_t k, std::vector<Dummies>& places) const {
-    const Measurement& segment = at(k);
-    const std::vector<SegmentRow>& rows = problem_.segments[segment.source];
+    const estimation::Measurement& segment = at(k);
+    const std::vector<estimation::SegmentRow>& rows = problem_.segments[segment.source];
     std::vector<Pose> ends;
     std::vector<int> readings;
     Pose end;
     int count = 0;
-    for (const SegmentRow& row : rows) {
+    for (const estimation::SegmentRow& row : rows) {
       const double half = 0.5 * row.turn;
       end = compose(end, {row.path * std::cos(half), row.path * std::sin(half), row.turn});
       ends.push_back(end);
@@ -99,7 +102,7 @@ class Collector {
       return change;
     };
     double path = 0.0;
-    for (const SegmentRow& row : rows) path += std::abs(row.path);
+    for (const estimation::SegmentRow& row : rows) path += std::abs(row.path);
     const bool drives = path > kLeastPath && fit_.model.robot.drive == DriveKind::differential;
     const int group = 2 * static_cast<int>(places.size());
     for (std::size_t part = 0; drives && part < kBumps; ++part) {
@@ -119,7 +122,7 @@ class Collector {
 
   void add_sightings() {
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-      const Measurement& one = at(k);
+      const estimation::Measurement& one = at(k);
       if (projection_.left_out(k) || one.to < 0 || !problem_.is_landmark(one.to)) continue;
       const std::string_view last = one.kind->noise(one.rows - 1);
       const EventChange change = one.rows == 1 && last == "range" ? EventChange::range_off
@@ -128,15 +131,15 @@ class Collector {
                                                                   : EventChange::bearing_off;
       events_.push_back(
           {EventKind::sighting,
-           describe(problem_, one),
+           estimation::describe(problem_, one),
            {{{changed(k, Eigen::MatrixXd::Identity(one.rows, one.rows))}, {}, 0, change}}});
     }
   }
 
   void add_surveys() {
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-      const Measurement& one = at(k);
-      if (!is_surveyed_place(one) || projection_.left_out(k)) continue;
+      const estimation::Measurement& one = at(k);
+      if (!estimation::is_surveyed_place(one) || projection_.left_out(k)) continue;
       events_.push_back(
           {EventKind::landmark,
            problem_.landmarks[idx(one.from)],
@@ -166,9 +169,9 @@ class Collector {
     std::vector<std::vector<Visit>> visits(problem_.landmarks.size());
     std::set<int> surveyed;
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-      const Measurement& one = at(k);
+      const estimation::Measurement& one = at(k);
       if (projection_.left_out(k)) continue;
-      if (is_surveyed_place(one)) surveyed.insert(one.from);
+      if (estimation::is_surveyed_place(one)) surveyed.insert(one.from);
       if (one.to < 0 || !problem_.is_landmark(one.to)) continue;
       std::vector<Visit>& of = visits[idx(one.to)];
       if (of.empty() || of.back().pose != one.from) of.push_back({one.session, one.from, {}});
@@ -239,18 +242,18 @@ class Collector {
     }
   }
 
-  const FitState& fit_;
-  const RecordingProblem& problem_;
+  const fitting::FitState& fit_;
+  const estimation::RecordingProblem& problem_;
   const ScoreTest& tests_;
-  const FitProjection& projection_;
+  const fitting::FitProjection& projection_;
   std::vector<SingleEvent> events_;
 };
 
 }  // namespace
 
-std::vector<SingleEvent> single_events(const FitState& fit, const ScoreTest& tests,
-                                       const FitProjection& projection) {
+std::vector<SingleEvent> single_events(const fitting::FitState& fit, const ScoreTest& tests,
+                                       const fitting::FitProjection& projection) {
   return Collector(fit, tests, projection).run();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 struct DummyRows {
   std::size_t measurement = 0;
@@ -34,7 +34,8 @@ struct SingleEvent {
 };
 
 /// All that there could be, but for measurements that the fit leaves out.
-[[nodiscard]] std::vector<SingleEvent> single_events(const FitState& fit, const ScoreTest& tests,
-                                                     const FitProjection& projection);
+[[nodiscard]] std::vector<SingleEvent> single_events(const fitting::FitState& fit,
+                                                     const ScoreTest& tests,
+                                                     const fitting::FitProjection& projection);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

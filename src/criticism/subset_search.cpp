@@ -11,7 +11,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kLeastOwn = 0.05;       // that a column keeps beside the others of a set
@@ -146,7 +146,7 @@ SubsetSearch::Sizes SubsetSearch::sizes(const CandidateSet& set) const {
     const ColumnBlock& one = gram_.blocks[idx(set.members[idx(m)])];
     for (Eigen::Index c = 0; c < one.size; ++c) columns.push_back(one.first + c);
   }
-  const DenseCholesky factor(Eigen::MatrixXd(gram_.G(columns, columns)));
+  const linalg::DenseCholesky factor(Eigen::MatrixXd(gram_.G(columns, columns)));
   return {factor.solve(Eigen::MatrixXd(gram_.g(columns))), factor.inverse()};
 }
 
@@ -340,7 +340,8 @@ std::vector<CandidateSet> SubsetSearch::run() const {
   const auto all_from = [&](const auto& add) {
     std::vector<std::vector<CandidateSet>> found(idx(count));
     std::vector<double> bests(idx(count), best);
-    parallel_for(idx(count), [&](std::size_t i) { add(static_cast<int>(i), found[i], bests[i]); });
+    parallel::parallel_for(idx(count),
+                           [&](std::size_t i) { add(static_cast<int>(i), found[i], bests[i]); });
     best = std::max(best, *std::max_element(bests.begin(), bests.end()));
     for (const std::vector<CandidateSet>& some : found) {
       kept.insert(kept.end(), some.begin(), some.end());
@@ -392,4 +393,4 @@ std::vector<double> log_symmetric(const std::vector<double>& log_beliefs, std::s
   return e;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -38,7 +38,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// What a candidate is believed to be before any data.
 struct BlockBelief {
@@ -118,4 +118,4 @@ class SubsetSearch {
 [[nodiscard]] std::vector<double> log_symmetric(const std::vector<double>& log_beliefs,
                                                 std::size_t most);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr double kLargestPriorSd = 3.0;
@@ -52,10 +52,10 @@ void adjust_p_values(std::vector<Tested>& tested, int tried) {
       tests.push_back(one.tried);
     }
     const auto all = static_cast<double>(group ? known : tried - known);
-    const std::vector<double> adjusted = holm(p_values, tests, all);
+    const std::vector<double> adjusted = statistics::holm(p_values, tests, all);
     auto next = adjusted.begin();
     for (Tested& one : tested) {
-      if (is_known(one) == group) one.p_adjusted = bonferroni(*next++, 2.0);
+      if (is_known(one) == group) one.p_adjusted = statistics::bonferroni(*next++, 2.0);
     }
   }
 }
@@ -72,7 +72,7 @@ void visit_scores(const ScoreTest& tests, const std::vector<Candidate>& candidat
     std::size_t columns = 0;
     for (std::size_t k = first; k < candidates.size() && columns < batch; ++k) {
       effects.push_back(candidates[k].effect);
-      columns += coefficient_count(effects.back(), sessions);
+      columns += fitting::coefficient_count(effects.back(), sessions);
     }
     std::vector<Score> scores = tests.test(effects, resolution);
     for (std::size_t k = 0; k < scores.size(); ++k) visit(first + k, scores[k]);
@@ -95,7 +95,8 @@ void judge(std::vector<Tested>& tested, double chi2, int dof, int tried) {
       // Where its own rows show less noise than is stated, that is what it stands out from.
       const double noise =
           one.dispersion < 1.0 && left == 1.0 ? one.dispersion : std::max(left, one.dispersion);
-      one.p_value = chi2_p_value(one.share_found * one.score.score / noise, one.score.dof);
+      one.p_value =
+          statistics::chi2_p_value(one.share_found * one.score.score / noise, one.score.dof);
       least = std::min(least, left);
     }
   }
@@ -117,7 +118,7 @@ double dispersion_of(const Score& score, const LocalDispersion& local) {
   return score.dof > 0 && score.p_value < kWorthALook ? local(score) : 1.0;
 }
 
-void test_again(const FitState& fit, const ScoreTest& left, std::vector<Tested>& still,
+void test_again(const fitting::FitState& fit, const ScoreTest& left, std::vector<Tested>& still,
                 const std::function<bool(const Tested&)>& wanted) {
   std::vector<std::size_t> places;
   std::vector<Candidate> candidates;
@@ -168,4 +169,4 @@ const Tested* best_of(const std::vector<Tested>& tested, double level) {
   return best;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

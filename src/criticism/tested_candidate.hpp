@@ -12,7 +12,7 @@
 #include <functional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// A candidate's test, without its columns.
 struct Tested {
@@ -45,7 +45,7 @@ void judge(std::vector<Tested>& tested, double chi2, int dof, int tried);
 [[nodiscard]] double evidence_at(const Tested& one, double net);
 
 /// Tests again, of what is left, those for which `wanted` holds; all of them without it.
-void test_again(const FitState& fit, const ScoreTest& left, std::vector<Tested>& still,
+void test_again(const fitting::FitState& fit, const ScoreTest& left, std::vector<Tested>& still,
                 const std::function<bool(const Tested&)>& wanted = {});
 
 /// How the rows scatter that speak for this score; 1 where hardly anything does.
@@ -63,4 +63,4 @@ void test_again(const FitState& fit, const ScoreTest& left, std::vector<Tested>&
 /// weighs against; nullptr where there is none.
 [[nodiscard]] const Tested* best_of(const std::vector<Tested>& tested, double level);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr const char* kTurnSense = "turn sense";
@@ -26,7 +26,7 @@ struct Variable {
   std::vector<Shape> shapes;
 };
 
-bool varies(const FitState& fit, const std::string& covariate) {
+bool varies(const fitting::FitState& fit, const std::string& covariate) {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;
   for (const DrivenRecording& recording : fit.recordings) {
@@ -42,11 +42,11 @@ bool varies(const FitState& fit, const std::string& covariate) {
 }
 
 /// Bells on a grid over the map.
-Variable place_variable(const FitState& fit) {
+Variable place_variable(const fitting::FitState& fit) {
   constexpr int kAcross = 4;
   Vector2 low(1e300, 1e300);
   Vector2 high = -low;
-  for (const SessionPath& path : fit.paths) {
+  for (const fitting::SessionPath& path : fit.paths) {
     for (const Pose& pose : path.ends) {
       low = low.cwiseMin(pose.position());
       high = high.cwiseMax(pose.position());
@@ -55,12 +55,14 @@ Variable place_variable(const FitState& fit) {
   Variable place{"place", {}};
   const Vector2 step = (high - low) / kAcross;
   if (!(step.maxCoeff() > 0.0)) return place;
-  const auto rounded = [&step](double value) { return rounded_within(value, step.maxCoeff()); };
+  const auto rounded = [&step](double value) {
+    return text::rounded_within(value, step.maxCoeff());
+  };
   const double radius = rounded(0.6 * step.maxCoeff());
   for (int i = 0; i < kAcross; ++i) {
     for (int j = 0; j < kAcross; ++j) {
       const Vector2 at = low + Vector2((i + 0.5) * step.x(), (j + 0.5) * step.y());
-      place.shapes.emplace_back(kBellPattern,
+      place.shapes.emplace_back(effects::kBellPattern,
                                 std::vector<ShapeParameter>{
                                     {"x", rounded(at.x())}, {"y", rounded(at.y())}, {"r", radius}});
     }
@@ -70,7 +72,7 @@ Variable place_variable(const FitState& fit) {
 
 /// Turn rate [rad/s] that the wheels' noise does not feign: four standard deviations of the mean
 /// over half a window, as shapes see it beside a change of motion.
-double faintest_turn(const FitState& fit) {
+double faintest_turn(const fitting::FitState& fit) {
   const Noise& noise = fit.model.noise;
   std::vector<double> deviations;
   for (const DrivenRecording& recording : fit.recordings) {
@@ -78,29 +80,30 @@ double faintest_turn(const FitState& fit) {
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       const double duration = drive.duration(row);
       const Robot& robot = fit.model.robot;
-      const double variance = drive.wheels.empty()
-                                  ? wheel_arc_noise(noisy_travel(drive, row, robot),
-                                                    robot.wheelbase, {noise.left, noise.right})
-                                        .heading
-                                  : row_noise(drive, row, 1.0, duration, robot, noise).heading;
+      const double variance =
+          drive.wheels.empty()
+              ? wheel_arc_noise(drive::noisy_travel(drive, row, robot), robot.wheelbase,
+                                {noise.left, noise.right})
+                    .heading
+              : odometry::row_noise(drive, row, 1.0, duration, robot, noise).heading;
       if (variance == 0.0) continue;
-      const double window = std::max(duration, 0.5 * kRateWindow);
+      const double window = std::max(duration, 0.5 * drive::kRateWindow);
       deviations.push_back(std::sqrt(variance / duration / window));
     }
   }
   if (deviations.empty()) return 0.0;
   const auto high = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() * 9 / 10);
   std::nth_element(deviations.begin(), high, deviations.end());
-  return rounded_within(4.0 * *high, *high);
+  return text::rounded_within(4.0 * *high, *high);
 }
 
 /// The sign of the turn rate, but 0 where the robot drives straight: there the sign would be the
 /// noise's own, and go with every error that this noise makes.
-Shape turn_sense(const FitState& fit) {
+Shape turn_sense(const fitting::FitState& fit) {
   return {"(sign(turn_rate-{w})+sign(turn_rate+{w}))/2", {{"w", faintest_turn(fit)}}};
 }
 
-std::vector<Variable> variables_of(const FitState& fit) {
+std::vector<Variable> variables_of(const fitting::FitState& fit) {
   std::vector<Variable> variables{{"all", {"1"}},
                                   {"heading", {"sin(heading)", "cos(heading)"}},
                                   {kTurnSense, {turn_sense(fit)}},
@@ -115,25 +118,25 @@ std::vector<Variable> variables_of(const FitState& fit) {
   if (!place.shapes.empty()) variables.push_back(std::move(place));
   if (fit.recordings.size() > 1) variables.push_back({"session", {"session"}});
   for (const Covariate& covariate : fit.recordings.front().drive.covariates) {
-    if (is_own_column(fit.model.robot, covariate.name)) continue;
+    if (drive::is_own_column(fit.model.robot, covariate.name)) continue;
     if (varies(fit, covariate.name)) variables.push_back({covariate.name, {covariate.name}});
   }
   return variables;
 }
 
 /// Of the drive, of what was measured, and of where the sensor sits.
-std::vector<NamedResidual> residuals_of(const FitState& fit) {
-  std::vector<NamedResidual> all{{"stretch", Channel::travel},
-                                 {"orientation", Channel::creep},
-                                 {"turn", Channel::turn},
-                                 {"bend", Channel::difference}};
-  for (const MeasurementKind* kind : kinds::all()) {
+std::vector<estimation::NamedResidual> residuals_of(const fitting::FitState& fit) {
+  std::vector<estimation::NamedResidual> all{{"stretch", Channel::travel},
+                                             {"orientation", Channel::creep},
+                                             {"turn", Channel::turn},
+                                             {"bend", Channel::difference}};
+  for (const estimation::MeasurementKind* kind : estimation::kinds::all()) {
     int rows = 0;
-    for (const Measurement& one : fit.problem.measurements) {
+    for (const estimation::Measurement& one : fit.problem.measurements) {
       if (one.kind == kind) rows = std::max(rows, one.rows);
     }
     if (rows == 0) continue;
-    const std::vector<NamedResidual> own = kind->residuals(rows);
+    const std::vector<estimation::NamedResidual> own = kind->residuals(rows);
     all.insert(all.end(), own.begin(), own.end());
   }
   all.push_back({"sighting ahead", Channel::lever});
@@ -143,20 +146,21 @@ std::vector<NamedResidual> residuals_of(const FitState& fit) {
 
 /// Whether the variable holds the very noise of this residual. The difference of the wheels is the
 /// turn rate: where the robot weaves, its noise decides many a sign.
-bool is_its_own_noise(const NamedResidual& kind, const Variable& variable) {
+bool is_its_own_noise(const estimation::NamedResidual& kind, const Variable& variable) {
   return kind.channel == Channel::difference &&
          (variable.name == kTurnSense || variable.name == kSignedTurnRate);
 }
 
 /// Mean over all rows of f f', f the shapes' values: a trend of coefficients a is sqrt(a' G a) in
 /// size (rms).
-Eigen::MatrixXd mean_products(const std::vector<Shape>& shapes, const ShapeContext& context) {
+Eigen::MatrixXd mean_products(const std::vector<Shape>& shapes,
+                              const fitting::ShapeContext& context) {
   const auto count = static_cast<Eigen::Index>(shapes.size());
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(count, count);
   std::vector<std::vector<std::vector<double>>> values;
   values.reserve(shapes.size());
   for (const Shape& shape : shapes) {
-    values.push_back(context.values(shape, ShapeContext::Instant::middle));
+    values.push_back(context.values(shape, fitting::ShapeContext::Instant::middle));
   }
   double rows = 0.0;
   for (std::size_t s = 0; s < context.recordings().size(); ++s) {
@@ -174,8 +178,8 @@ Eigen::MatrixXd mean_products(const std::vector<Shape>& shapes, const ShapeConte
 
 }  // namespace
 
-std::vector<Trend> find_trends(const FitState& fit, const ScoreTest& tests) {
-  const std::vector<NamedResidual> residuals = residuals_of(fit);
+std::vector<Trend> find_trends(const fitting::FitState& fit, const ScoreTest& tests) {
+  const std::vector<estimation::NamedResidual> residuals = residuals_of(fit);
   const std::vector<Variable> variables = variables_of(fit);
   // Variable by variable, so that its shapes are evaluated once; listed kind by kind.
   std::vector<std::vector<Trend>> found(residuals.size());
@@ -217,7 +221,7 @@ std::vector<Trend> find_trends(const FitState& fit, const ScoreTest& tests) {
       seen.push_back(std::move(trend));
     }
   }
-  const std::vector<double> adjusted = holm(p_values);
+  const std::vector<double> adjusted = statistics::holm(p_values);
   for (std::size_t k = 0; k < seen.size(); ++k) seen[k].p_adjusted = adjusted[k];
   // A p-value of 0 says nothing of two: what a trend explains beyond its own freedom does.
   std::stable_sort(seen.begin(), seen.end(), [](const Trend& a, const Trend& b) {
@@ -226,4 +230,4 @@ std::vector<Trend> find_trends(const FitState& fit, const ScoreTest& tests) {
   return seen;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

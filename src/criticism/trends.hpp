@@ -9,10 +9,10 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// Variables that trends are sought against: the built-in ones that vary, and every covariate.
 /// Strongest first; what these recordings cannot show is left out.
-[[nodiscard]] std::vector<Trend> find_trends(const FitState& fit, const ScoreTest& tests);
+[[nodiscard]] std::vector<Trend> find_trends(const fitting::FitState& fit, const ScoreTest& tests);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

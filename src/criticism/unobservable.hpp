@@ -8,11 +8,12 @@
 #include "estimation/recording_problem.hpp"
 #include "trussmap/diagnose.hpp"
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// Not seen, but would be where the model explained the rest.
 [[nodiscard]] bool hidden_by_misfit(const Tested& one);
 
-[[nodiscard]] Unobservable why_unobservable(const Tested& one, const RecordingProblem& problem);
+[[nodiscard]] Unobservable why_unobservable(const Tested& one,
+                                            const estimation::RecordingProblem& problem);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

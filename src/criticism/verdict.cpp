@@ -6,21 +6,29 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 Objection misfit_of(double p_value, const std::vector<Trend>& trends, double level) {
   constexpr double kQuestions = 2.0;
   double of_trends = 1.0;
   for (const Trend& one : trends) of_trends = std::min(of_trends, one.p_adjusted);
-  if (bonferroni(p_value, kQuestions) < level) return Objection::chi2;
-  return bonferroni(of_trends, kQuestions) < level ? Objection::trend : Objection::none;
+  if (statistics::bonferroni(p_value, kQuestions) < level) return Objection::chi2;
+  return statistics::bonferroni(of_trends, kQuestions) < level ? Objection::trend : Objection::none;
 }
+
+}  // namespace trussmap::criticism
+
+namespace trussmap {
 
 bool is_slight_misfit(const Diagnosis& diagnosis) {
   constexpr double kSlight = 0.001;  // p
   return diagnosis.verdict == Diagnosis::Verdict::unexplained_misfit &&
          diagnosis.objection == Objection::chi2 && diagnosis.p_value > kSlight;
 }
+
+}  // namespace trussmap
+
+namespace trussmap::criticism {
 
 void object_to_noise(const FittedNoise& noise, Diagnosis& diagnosis) {
   if (diagnosis.verdict != Diagnosis::Verdict::nothing_missing) return;
@@ -31,6 +39,10 @@ void object_to_noise(const FittedNoise& noise, Diagnosis& diagnosis) {
   diagnosis.verdict = Diagnosis::Verdict::unexplained_misfit;
   diagnosis.objection = Objection::noise;
 }
+
+}  // namespace trussmap::criticism
+
+namespace trussmap {
 
 std::vector<const Finding*> found_by(const Diagnosis& diagnosis) {
   std::vector<const Finding*> found;

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// Whether chi^2 as a whole, or else a trend, is significant at this level: Bonferroni's rule for
 /// the two. Objection::effect is another question (effect_search.hpp).
@@ -19,4 +19,4 @@ namespace trussmap {
 /// the verdict becomes an unexplained misfit.
 void object_to_noise(const FittedNoise& noise, Diagnosis& diagnosis);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

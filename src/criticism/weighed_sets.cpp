@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-namespace trussmap {
+namespace trussmap::criticism {
 namespace {
 
 constexpr std::size_t kMostExact = 150;  // candidates
@@ -155,4 +155,4 @@ WeighedSets weigh_sets(const std::vector<Tested>& tested, const SetGround& groun
   return weigh_sets(std::move(some), std::move(of_some), ground);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

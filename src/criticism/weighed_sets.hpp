@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::criticism {
 
 /// What sets are asked of.
 struct SetGround {
@@ -47,4 +47,4 @@ struct WeighedSets {
 [[nodiscard]] double dispersion_beside(const CandidateGram& gram, const CandidateSet& set,
                                        const SetGround& ground);
 
-}  // namespace trussmap
+}  // namespace trussmap::criticism

@@ -9,6 +9,8 @@
 #include <stdexcept>
 
 namespace trussmap {
+using namespace datasets;
+
 namespace {
 
 constexpr DatasetFormat kFormats[] = {

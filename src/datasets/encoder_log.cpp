@@ -33,7 +33,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::datasets {
 namespace {
 
 namespace fs = std::filesystem;
@@ -228,7 +228,7 @@ Dataset read_encoder_log(const fs::path& file) {
                                                    header.metres_per_turn);
     recording.drive.covariates[1].values.push_back(steered / (now.t - log.samples[first].t));
     recording.truth.push_back(truth_of(now, header.sensor, result.epoch));
-    const SourceLine source(recording.name, now.line);
+    const io::SourceLine source(recording.name, now.line);
     source.expect_last_row(recording.drive);
     source.expect(recording.truth.back());
     travelled = steered = 0.0;
@@ -241,4 +241,4 @@ Dataset read_encoder_log(const fs::path& file) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

@@ -10,7 +10,7 @@
 #include <concepts>
 #include <filesystem>
 
-namespace trussmap {
+namespace trussmap::datasets {
 
 [[nodiscard]] bool is_mrclam(const std::filesystem::path& prefix);
 [[nodiscard]] Dataset read_mrclam(const std::filesystem::path& prefix);
@@ -45,4 +45,4 @@ template <std::integral Number>
   return {key, static_cast<double>(number), words};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

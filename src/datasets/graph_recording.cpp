@@ -29,7 +29,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::datasets {
 namespace {
 
 /// An edge the other way round; its information goes along.
@@ -134,7 +134,7 @@ class GraphReader {
           {static_cast<double>(from), static_cast<double>(place_[idx(edge.to)]), edge.measured.x,
            edge.measured.y, edge.measured.heading,
            std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1))), std::sqrt(covariance(2, 2))});
-      SourceLine(edge_name(edge.from, edge.to), 0).expect(result_.recording.loops.back());
+      io::SourceLine(edge_name(edge.from, edge.to), 0).expect(result_.recording.loops.back());
     }
   }
 
@@ -153,7 +153,7 @@ class GraphReader {
       drive.covariates[0].values.push_back(way.x());
       drive.covariates[1].values.push_back(way.y());
       drive.covariates[2].values.push_back(steps_[k]->measured.heading);
-      SourceLine(edge_name(steps_[k]->from, steps_[k]->to), 0).expect_last_row(drive);
+      io::SourceLine(edge_name(steps_[k]->from, steps_[k]->to), 0).expect_last_row(drive);
       const Matrix3 covariance = covariance_of(*steps_[k]);
       travel.push_back(0.5 * (covariance(0, 0) + covariance(1, 1)));
       heading.push_back(covariance(2, 2));
@@ -164,8 +164,8 @@ class GraphReader {
     model.robot.matrix = Matrix3::Identity();
     Noise& noise = model.noise;
     noise.left = noise.right = 0.0;
-    noise.travel_per_s = std::sqrt(median(travel));
-    noise.heading_per_s = std::sqrt(median(heading));
+    noise.travel_per_s = std::sqrt(statistics::median(travel));
+    noise.heading_per_s = std::sqrt(statistics::median(heading));
     const auto even = [](double variance, double sd) {
       return std::sqrt(variance) < 2.0 * sd && std::sqrt(variance) > 0.5 * sd;
     };
@@ -186,7 +186,7 @@ class GraphReader {
       const double bearing = std::atan2(edge.measured.y(), edge.measured.x());
       sightings.push_back(
           {static_cast<double>(place_[idx(edge.pose)]), name_of(edge.point), range, bearing});
-      SourceLine(edge_name(edge.pose, edge.point), 0).expect(sightings.back());
+      io::SourceLine(edge_name(edge.pose, edge.point), 0).expect(sightings.back());
       const Matrix2 R = rotation(bearing);
       if (!(edge.information.determinant() > 0.0)) unknown(edge.pose, edge.point);
       const Matrix2 covariance = R.transpose() * edge.information.inverse() * R;
@@ -196,8 +196,8 @@ class GraphReader {
     std::stable_sort(sightings.begin(), sightings.end(),
                      [](const Sighting& a, const Sighting& b) { return a.t < b.t; });
     if (sightings.empty()) return;
-    result_.model.noise.range = std::sqrt(median(along));
-    result_.model.noise.bearing = std::sqrt(median(across));
+    result_.model.noise.range = std::sqrt(statistics::median(along));
+    result_.model.noise.bearing = std::sqrt(statistics::median(across));
   }
 
   const PoseGraph& graph_;
@@ -229,4 +229,4 @@ Dataset read_graph_recording(const std::filesystem::path& file) {
           "the pose graph " + name + ", a second per pose", std::move(figures)};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::datasets {
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,12 +46,13 @@ std::vector<Row> rows_of(const fs::path& file) {
     const Row row{one[0], one[1], one[2], one[3], one.line};
     if (!rows.empty() && !(row.t > rows.back().t)) {
       throw InputError(file.string(), row.line,
-                       "time repeats or runs backwards at " + csv_number(row.t) +
+                       "time repeats or runs backwards at " + io::csv_number(row.t) +
                            ", expected rows in order of time");
     }
     if (!(row.range >= 0.0)) {
-      throw InputError(file.string(), row.line,
-                       "a negative range at time " + csv_number(row.t) + ", expected 0 or more");
+      throw InputError(
+          file.string(), row.line,
+          "a negative range at time " + io::csv_number(row.t) + ", expected 0 or more");
     }
     rows.push_back(row);
   }
@@ -75,7 +76,7 @@ Dataset read_line_robot(const fs::path& file) {
   recording.survey.push_back({"post", kPost, 0.0});
   Drive& drive = recording.drive;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const SourceLine source(recording.name, rows[k].line);
+    const io::SourceLine source(recording.name, rows[k].line);
     recording.truth.push_back({rows[k].t, rows[k].truth, 0.0, 0.0});
     source.expect(recording.truth.back());
     if (k == 0) continue;
@@ -103,4 +104,4 @@ Dataset read_line_robot(const fs::path& file) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

@@ -13,17 +13,17 @@
 #include <string_view>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::datasets {
 namespace {
 
-void read_matrix(const MatElement& matrix, const std::string& file,
+void read_matrix(const io::MatElement& matrix, const std::string& file,
                  std::map<std::string, std::vector<double>>& columns) {
-  MatElements parts(matrix.data, matrix.begin, file);
-  const MatHead head = mat_head(parts);
+  io::MatElements parts(matrix.data, matrix.begin, file);
+  const io::MatHead head = io::mat_head(parts);
   if (head.dimensions.size() != 2) parts.fail("has an array that is no matrix");
   if (head.name.empty()) parts.fail("has an array without a name");
-  const MatElement values = parts.next();
-  std::optional<std::vector<double>> numbers = mat_numbers(values.type, values.data);
+  const io::MatElement values = parts.next();
+  std::optional<std::vector<double>> numbers = io::mat_numbers(values.type, values.data);
   const bool column =
       (head.rows() == 1 || head.across() == 1) && numbers && head.elements() == numbers->size();
   if (head.complex || !column) {
@@ -37,12 +37,12 @@ void read_matrix(const MatElement& matrix, const std::string& file,
 std::map<std::string, std::vector<double>> read_mat_columns(const std::filesystem::path& file) {
   const std::string bytes = read_file(file);
   const std::string name = file.string();
-  require_mat_header(bytes, name);
+  io::require_mat_header(bytes, name);
   std::map<std::string, std::vector<double>> columns;
-  MatElements elements(std::string_view(bytes).substr(kMatHeader), kMatHeader, name);
+  io::MatElements elements(std::string_view(bytes).substr(io::kMatHeader), io::kMatHeader, name);
   while (!elements.ends()) {
-    const MatElement element = elements.next();
-    if (element.type != kMatMatrix) elements.fail("has an element that is no plain matrix");
+    const io::MatElement element = elements.next();
+    if (element.type != io::kMatMatrix) elements.fail("has an element that is no plain matrix");
     read_matrix(element, name, columns);
   }
   return columns;
@@ -69,4 +69,4 @@ const std::vector<double>& mat_column(const std::map<std::string, std::vector<do
   return values;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

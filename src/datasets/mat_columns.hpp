@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::datasets {
 
 /// By name. Throws InputError with the byte where it is something else.
 [[nodiscard]] std::map<std::string, std::vector<double>> read_mat_columns(
@@ -23,4 +23,4 @@ namespace trussmap {
     const std::map<std::string, std::vector<double>>& columns, const std::string& name,
     const std::filesystem::path& file, std::size_t rows = 0);
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

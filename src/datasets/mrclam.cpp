@@ -29,7 +29,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::datasets {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,7 +68,7 @@ void read_drive(const fs::path& prefix, MrclamRecording& result) {
   const fs::path file = require_plain_or_xz(beside(prefix, "_Odometry.dat"));
   const std::string name = file.string();
   const std::vector<NumberRow> rows = read_rows(file, 3);
-  SourceLine(name, rows.front().line).expect("time", rows.front()[0], kLargestTime);
+  io::SourceLine(name, rows.front().line).expect("time", rows.front()[0], io::kLargestTime);
   result.epoch = std::floor(rows.front()[0]);
   Drive& drive = result.recording.drive;
   double before = since(result.epoch, rows.front()[0]);
@@ -81,7 +81,7 @@ void read_drive(const fs::path& prefix, MrclamRecording& result) {
       drive.t.push_back(t);
       drive.left.push_back((v - 0.5 * kCreateWheelbase * w) * dt);
       drive.right.push_back((v + 0.5 * kCreateWheelbase * w) * dt);
-      SourceLine(name, rows[k].line).expect_last_row(drive);
+      io::SourceLine(name, rows[k].line).expect_last_row(drive);
       before = t;
     } else {
       ++result.merged_times;
@@ -122,7 +122,7 @@ void read_sightings(const fs::path& prefix, MrclamRecording& result) {
       ++result.outside_drive;
     } else {
       sightings.push_back({t, std::to_string(subject->second), row[2], row[3]});
-      SourceLine(name, row.line).expect(sightings.back());
+      io::SourceLine(name, row.line).expect(sightings.back());
     }
   }
   if (sightings.empty()) {
@@ -154,7 +154,7 @@ void read_survey(const fs::path& prefix, Recording& recording) {
     }
     const double sd = std::sqrt(0.5 * (row[3] * row[3] + row[4] * row[4]));
     recording.survey.push_back({std::to_string(subject), row[1], row[2], sd > 0.0 ? sd : kAbsent});
-    SourceLine(name, row.line).expect(recording.survey.back());
+    io::SourceLine(name, row.line).expect(recording.survey.back());
   }
 }
 
@@ -171,7 +171,7 @@ void read_truth(const fs::path& prefix, MrclamRecording& result) {
     if (t < drive.start() || t > drive.t.back()) continue;
     if (!truth.empty() && t <= truth.back().t) continue;
     truth.push_back({t, row[1], row[2], row[3]});
-    SourceLine(name, row.line).expect(truth.back());
+    io::SourceLine(name, row.line).expect(truth.back());
   }
 }
 
@@ -229,4 +229,4 @@ Dataset read_mrclam(const fs::path& prefix) {
           fmt::format("t = 0 is {:.0f} s, Unix time", read.epoch), std::move(figures)};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

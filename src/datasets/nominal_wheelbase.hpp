@@ -4,8 +4,8 @@
 // Of data sets that state speed and turn rate alone: the drive is that of two wheels so far apart.
 #pragma once
 
-namespace trussmap {
+namespace trussmap::datasets {
 
 inline constexpr double kNominalWheelbase = 1.0;  // m
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

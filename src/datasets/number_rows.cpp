@@ -13,7 +13,7 @@
 #include <string>
 #include <system_error>
 
-namespace trussmap {
+namespace trussmap::datasets {
 
 std::vector<NumberRow> read_number_rows(const std::filesystem::path& file, std::size_t columns,
                                         std::string_view separators) {
@@ -33,7 +33,7 @@ std::vector<NumberRow> read_number_rows(const std::filesystem::path& file, std::
       double value = 0.0;
       const auto [rest, status] = std::from_chars(word.data(), word.data() + word.size(), value);
       if (status != std::errc() || rest != word.data() + word.size() || !std::isfinite(value)) {
-        throw InputError(file.string(), line, shown_field(word) + ", expected a finite number");
+        throw InputError(file.string(), line, io::shown_field(word) + ", expected a finite number");
       }
       row.values.push_back(value);
       k = content.find_first_not_of(separators, stop);
@@ -51,10 +51,10 @@ std::vector<NumberRow> read_number_rows(const std::filesystem::path& file, std::
 }
 
 std::filesystem::path plain_or_xz(const std::filesystem::path& path) {
-  if (is_present(path)) return path;
+  if (files::is_present(path)) return path;
   std::filesystem::path compressed = path;
   compressed += ".xz";
-  if (is_present(compressed)) return compressed;
+  if (files::is_present(compressed)) return compressed;
   return {};
 }
 
@@ -74,4 +74,4 @@ double since(double epoch, double time) {
   return std::round((time - epoch) * 1e6) / 1e6;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

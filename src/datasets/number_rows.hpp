@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::datasets {
 
 inline constexpr std::string_view kWhiteSpace = " \t\r";
 inline constexpr std::string_view kCommas = ", \t\r";
@@ -39,4 +39,4 @@ struct NumberRow {
 /// A time counted from an epoch, s: to microseconds, which is more than such files have.
 [[nodiscard]] double since(double epoch, double time);
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

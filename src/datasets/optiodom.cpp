@@ -33,7 +33,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::datasets {
 namespace {
 
 namespace fs = std::filesystem;
@@ -96,7 +96,7 @@ double positive_number(const std::map<std::string, std::string>& metadata, const
   if (status != std::errc() || end != text.data() + text.size() || !(value >= kSmallest) ||
       !(value <= kLargest)) {
     throw InputError(file.string(), 0,
-                     std::string(key) + " is " + shown_field(text) +
+                     std::string(key) + " is " + io::shown_field(text) +
                          ", expected a positive number, from 0.001 to 1e9");
   }
   return value;
@@ -150,7 +150,7 @@ Dataset read_optiodom(const fs::path& file) {
   if (robot == nullptr) {
     throw InputError(about.string(), 0,
                      "the robot's type is " +
-                         shown_field(type == metadata.end() ? "" : type->second) +
+                         io::shown_field(type == metadata.end() ? "" : type->second) +
                          ", expected diff, tricyc or omni3");
   }
   Dataset result;
@@ -173,7 +173,7 @@ Dataset read_optiodom(const fs::path& file) {
     before = row[0];
     recording.truth.push_back({row[0], row[1], row[2], wrap_angle(row[3])});
     take_row(row, *robot, metre_per_tick, recording.drive);
-    const SourceLine source(name, row.line);
+    const io::SourceLine source(name, row.line);
     source.expect(recording.truth.back());
     source.expect_last_row(recording.drive);
   }
@@ -186,4 +186,4 @@ Dataset read_optiodom(const fs::path& file) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

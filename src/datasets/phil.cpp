@@ -34,7 +34,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::datasets {
 namespace {
 
 namespace fs = std::filesystem;
@@ -91,7 +91,7 @@ struct Ticks {
   std::vector<std::int64_t> right;
 };
 
-int count_at(const CsvReader& csv, int column) {
+int count_at(const io::CsvReader& csv, int column) {
   const double value = csv.number(column);
   if (value < 0.0 || value >= kCounts || value != std::floor(value)) {
     csv.fail("column " + csv.columns()[idx(column)] + " is " + std::string(csv.field(column)) +
@@ -108,7 +108,7 @@ int steps(int from, int to) {
 Ticks read_ticks(const fs::path& folder, double& epoch) {
   const fs::path file = require_plain_or_xz(folder / "kobuki_data.csv");
   const std::string text = read_file(file);
-  CsvReader csv(text, file.string());
+  io::CsvReader csv(text, file.string());
   const std::array counters{csv.require("left_ticks"), csv.require("right_ticks")};
   const int seconds = csv.require("time_s");
   const int nanoseconds = csv.require("time_ns");
@@ -192,14 +192,14 @@ Counter turn_of_wheels(const Ticks& ticks) {
 Counter read_gyro(const fs::path& folder, int& stale) {
   const fs::path file = require_plain_or_xz(folder / "rio_data.csv");
   const std::string text = read_file(file);
-  CsvReader csv(text, file.string());
+  io::CsvReader csv(text, file.string());
   const int rate_column = csv.require("raw_gyro_z");
   const int time_column = csv.require("navx time");
   Counter turn;
   double epoch = 0.0;
   double before = 0.0;
   while (csv.next()) {
-    const double rate = kDegree * csv.number(rate_column, kLargestRate);
+    const double rate = geometry::kDegree * csv.number(rate_column, kLargestRate);
     const double time = 1e-3 * csv.number(time_column, 1e12);
     if (turn.t.empty()) {
       epoch = time;
@@ -347,4 +347,4 @@ Dataset read_phil(const fs::path& folder) {
           {clocks}};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

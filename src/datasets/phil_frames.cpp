@@ -17,7 +17,7 @@
 #include <string>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::datasets {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +28,7 @@ constexpr double kFastestBody = 5.0;   // m/s
 constexpr double kFastestTurn = 20.0;  // rad/s
 // The tracked body's x axis points to the right of the robot's and a little back: by its course
 // while it drives straight on, 104.2 to 104.9 deg in three trials.
-constexpr double kAheadOfBody = 104.4 * kDegree;
+constexpr double kAheadOfBody = 104.4 * geometry::kDegree;
 
 /// Cells of a line, NaN where one is empty.
 std::vector<double> cells(std::string_view content, const std::string& file, std::size_t line) {
@@ -49,7 +49,8 @@ std::vector<double> cells(std::string_view content, const std::string& file, std
       constexpr double kLargest = 1e9;  // mm, or frames: beyond any arena
       if (status != std::errc() || rest != word.data() + word.size() ||
           !(std::abs(value) <= kLargest)) {
-        throw InputError(file, line, shown_field(word) + ", expected a number of size 1e9 at most");
+        throw InputError(file, line,
+                         io::shown_field(word) + ", expected a number of size 1e9 at most");
       }
     }
     row.push_back(value);
@@ -131,4 +132,4 @@ std::vector<TruthRow> read_phil_frames(const fs::path& folder, double until, int
   return truth;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

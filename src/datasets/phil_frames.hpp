@@ -9,11 +9,11 @@
 #include <filesystem>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::datasets {
 
 /// Poses of the robot up to a time, s, 0.1 s apart; `lost` counts frames without the robot, or
 /// where it jumps. Throws InputError with file and line.
 [[nodiscard]] std::vector<TruthRow> read_phil_frames(const std::filesystem::path& folder,
                                                      double until, int& lost);
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

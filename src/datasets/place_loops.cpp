@@ -24,7 +24,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::datasets {
 namespace {
 
 namespace fs = std::filesystem;
@@ -57,7 +57,7 @@ std::vector<TaggedRow> tagged_rows(std::string_view text, const std::string& fil
       double value = 0.0;
       const auto [rest, status] = std::from_chars(word.data(), word.data() + word.size(), value);
       if (status != std::errc() || rest != word.data() + word.size() || !std::isfinite(value)) {
-        throw InputError(file, line, shown_field(word) + ", expected a finite number");
+        throw InputError(file, line, io::shown_field(word) + ", expected a finite number");
       }
       row.numbers.push_back(value);
     }
@@ -79,14 +79,14 @@ void add_velocity(const TaggedRow& row, const std::string& file, TaggedRow& befo
     const double t = row.numbers[0];
     const double duration = t - before.numbers[0];
     if (!(duration > 0.0)) {
-      throw InputError(file, row.line, "time repeats or runs backwards at " + csv_number(t));
+      throw InputError(file, row.line, "time repeats or runs backwards at " + io::csv_number(t));
     }
     const double path = duration * before.numbers[1];
     const double apart = 0.5 * kNominalWheelbase * duration * before.numbers[3];
     drive.t.push_back(t);
     drive.left.push_back(path - apart);
     drive.right.push_back(path + apart);
-    SourceLine(file, row.line).expect_last_row(drive);
+    io::SourceLine(file, row.line).expect_last_row(drive);
   }
   before = row;
 }
@@ -114,7 +114,8 @@ Dataset read_place_loops(const fs::path& prefix) {
       require_numbers(row, 3, file.string());
       loops.push_back({row.numbers[0], row.numbers[1], 0.0, 0.0, 0.0});
     } else {
-      throw InputError(file.string(), row.line, shown_field(row.tag) + ", expected odom2 or loop");
+      throw InputError(file.string(), row.line,
+                       io::shown_field(row.tag) + ", expected odom2 or loop");
     }
   }
   if (drive.rows() < 2) throw InputError(file.string(), 0, "no drive, expected rows of odom2");
@@ -142,4 +143,4 @@ Dataset read_place_loops(const fs::path& prefix) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

@@ -24,7 +24,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::datasets {
 namespace {
 
 namespace fs = std::filesystem;
@@ -60,19 +60,19 @@ struct Table {
 void read_drive(const fs::path& prefix, RangeRecording& result) {
   const Table table(beside(prefix, "_DR.txt"), 3);
   const NumberRow& first = table.rows.front();
-  SourceLine(table.file, first.line).expect("time", first[0], kLargestTime);
+  io::SourceLine(table.file, first.line).expect("time", first[0], io::kLargestTime);
   result.epoch = std::floor(first[0]);
   Drive& drive = result.recording.drive;
   for (const NumberRow& row : table.rows) {
     const double t = since(result.epoch, row[0]);
     if (!drive.t.empty() && t <= drive.t.back()) {
       throw InputError(table.file, row.line,
-                       "time repeats or runs backwards at " + csv_number(row[0]));
+                       "time repeats or runs backwards at " + io::csv_number(row[0]));
     }
     drive.t.push_back(t);
     drive.left.push_back(row[1] - 0.5 * kNominalWheelbase * row[2]);
     drive.right.push_back(row[1] + 0.5 * kNominalWheelbase * row[2]);
-    SourceLine(table.file, row.line).expect_last_row(drive);
+    io::SourceLine(table.file, row.line).expect_last_row(drive);
   }
   if (drive.rows() < 2) {
     throw InputError(table.file, 0, "one row, expected two at least");
@@ -87,11 +87,12 @@ void read_ranges(const fs::path& prefix, RangeRecording& result) {
     constexpr double kLargestId = 1e6;
     if (!(row[2] >= 0.0) || row[2] > kLargestId || row[2] != std::floor(row[2])) {
       throw InputError(table.file, row.line,
-                       "beacon " + csv_number(row[2]) + ", expected a whole number from 0");
+                       "beacon " + io::csv_number(row[2]) + ", expected a whole number from 0");
     }
     if (row[3] < 0.0) {
-      throw InputError(table.file, row.line,
-                       "a negative range at time " + csv_number(row[0]) + ", expected 0 or more");
+      throw InputError(
+          table.file, row.line,
+          "a negative range at time " + io::csv_number(row[0]) + ", expected 0 or more");
     }
     const double t = since(result.epoch, row[0]);
     if (t < drive.start() || t > drive.t.back()) {
@@ -100,7 +101,7 @@ void read_ranges(const fs::path& prefix, RangeRecording& result) {
     }
     if (!sightings.empty() && t < sightings.back().t) ++result.unordered_ranges;
     sightings.push_back({t, std::to_string(static_cast<int>(row[2])), row[3], kAbsent});
-    SourceLine(table.file, row.line).expect(sightings.back());
+    io::SourceLine(table.file, row.line).expect(sightings.back());
   }
   std::stable_sort(sightings.begin(), sightings.end(),
                    [](const Sighting& a, const Sighting& b) { return a.t < b.t; });
@@ -116,7 +117,7 @@ void read_truth(const fs::path& prefix, RangeRecording& result) {
     const bool later = result.recording.truth.empty() || t > result.recording.truth.back().t;
     if (t < drive.start() || t > drive.t.back() || !later) continue;
     result.recording.truth.push_back({t, row[1], row[2], row[3]});
-    SourceLine(table.file, row.line).expect(result.recording.truth.back());
+    io::SourceLine(table.file, row.line).expect(result.recording.truth.back());
   }
 }
 
@@ -143,4 +144,4 @@ Dataset read_radio_ranges(const fs::path& prefix) {
           fmt::format("t = 0 is {:.0f} s", read.epoch), std::move(figures)};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

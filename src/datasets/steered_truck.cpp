@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::datasets {
 namespace {
 
 namespace fs = std::filesystem;
@@ -62,7 +62,7 @@ std::vector<BodyStep> steps_of(const Drive& drive) {
 }  // namespace
 
 bool is_steered_truck(const fs::path& prefix) {
-  return is_present(drive_file(prefix)) || is_present(fixes_file(prefix));
+  return files::is_present(drive_file(prefix)) || files::is_present(fixes_file(prefix));
 }
 
 Dataset read_steered_truck(const fs::path& prefix) {
@@ -95,7 +95,7 @@ Dataset read_steered_truck(const fs::path& prefix) {
     recording.drive.t.push_back(1e-3 * (time[k] - time[0]));
     recording.drive.covariates[0].values.push_back(speed[k - 1] * 1e-3 * (time[k] - time[k - 1]));
     recording.drive.covariates[1].values.push_back(steering[k - 1]);
-    SourceLine(driven.string() + ", row " + std::to_string(k + 1), 0)
+    io::SourceLine(driven.string() + ", row " + std::to_string(k + 1), 0)
         .expect_last_row(recording.drive);
   }
   if (recording.drive.rows() < 2) {
@@ -112,7 +112,7 @@ Dataset read_steered_truck(const fs::path& prefix) {
       continue;
     }
     recording.fixes.push_back({1e-3 * (stamped[k] - time[0]), east[k], north[k]});
-    SourceLine(received.string() + ", row " + std::to_string(k + 1), 0)
+    io::SourceLine(received.string() + ", row " + std::to_string(k + 1), 0)
         .expect(recording.fixes.back());
   }
   const fs::path graph = graph_file(prefix);
@@ -132,4 +132,4 @@ Dataset read_steered_truck(const fs::path& prefix) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

@@ -14,7 +14,7 @@
 #include <map>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::datasets {
 namespace {
 
 constexpr std::size_t kMostRows = 400;  // of an edge: 10 s
@@ -112,11 +112,11 @@ int take_trees(const std::filesystem::path& graph, const std::vector<BodyStep>& 
     recording.sightings.push_back({t, std::to_string(read.vertices[idx(edge.point)].id - last - 1),
                                    edge.measured.norm(),
                                    std::atan2(edge.measured.y(), edge.measured.x())});
-    SourceLine(file, 0).expect(recording.sightings.back());
+    io::SourceLine(file, 0).expect(recording.sightings.back());
   }
   std::stable_sort(recording.sightings.begin(), recording.sightings.end(),
                    [](const Sighting& a, const Sighting& b) { return a.t < b.t; });
   return static_cast<int>(rows.size());
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

@@ -16,7 +16,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::datasets {
 
 /// How the body moves in a row.
 struct BodyStep {
@@ -29,4 +29,4 @@ struct BodyStep {
 [[nodiscard]] int take_trees(const std::filesystem::path& graph, const std::vector<BodyStep>& steps,
                              Recording& recording);
 
-}  // namespace trussmap
+}  // namespace trussmap::datasets

@@ -10,6 +10,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace distributed;
+
 namespace {
 
 struct Displacements {

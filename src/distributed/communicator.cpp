@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::distributed {
 
 void require_mpi(int status, const char* what) {
   if (status != MPI_SUCCESS) {
@@ -121,4 +121,4 @@ std::vector<int> Communicator::starts(const std::vector<int>& counts) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::distributed {
 
 /// Throws SolveError unless an MPI call has succeeded.
 void require_mpi(int status, const char* what);
@@ -134,4 +134,4 @@ class Communicator {
   int count_ = 1;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::distributed {
 
 std::uint64_t hilbert_place(std::uint32_t x, std::uint32_t y) {
   constexpr std::uint32_t kLast = (std::uint32_t{1} << kHilbertBits) - 1;
@@ -24,4 +24,4 @@ std::uint64_t hilbert_place(std::uint32_t x, std::uint32_t y) {
   return place;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

@@ -7,11 +7,11 @@
 
 #include <cstdint>
 
-namespace trussmap {
+namespace trussmap::distributed {
 
 inline constexpr int kHilbertBits = 31;  // of each coordinate
 
 /// The place on the curve of a cell, coordinates from 0 to 2^31 - 1.
 [[nodiscard]] std::uint64_t hilbert_place(std::uint32_t x, std::uint32_t y);
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

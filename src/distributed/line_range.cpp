@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::distributed {
 namespace {
 
 constexpr std::int64_t kOverlap = 4096;  // bytes past the range to look for its last line's end
@@ -110,4 +110,4 @@ LineRange read_own_lines(const Communicator& all, const std::filesystem::path& p
   return lines;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

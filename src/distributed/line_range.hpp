@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::distributed {
 
 struct LineRange {
   std::string text;            ///< whole lines
@@ -20,4 +20,4 @@ struct LineRange {
 /// file cannot be read in one of them.
 [[nodiscard]] LineRange read_own_lines(const Communicator& all, const std::filesystem::path& path);
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

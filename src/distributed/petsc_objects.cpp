@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::distributed {
 namespace {
 
 /// Says nothing: the exception does.
@@ -40,4 +40,4 @@ PetscSession::~PetscSession() {
   static_cast<void>(PetscFinalize());
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

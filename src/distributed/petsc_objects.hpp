@@ -8,7 +8,7 @@
 
 #include <petscksp.h>
 
-namespace trussmap {
+namespace trussmap::distributed {
 
 /// Throws SolveError unless a call of PETSc's has succeeded; `what` was it doing.
 void require_petsc(PetscErrorCode error, const char* what);
@@ -46,4 +46,4 @@ using OwnedVector = Owned<Vec, VecDestroy>;
 using OwnedSolver = Owned<KSP, KSPDestroy>;
 using OwnedNullSpace = Owned<MatNullSpace, MatNullSpaceDestroy>;
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::distributed {
 namespace {
 
 /// A landmark on its way to its process.
@@ -203,4 +203,4 @@ void Placing::tell_directory() {
   for (const std::int64_t id : all_.exchange(letters)) find(id)->entry.fixed = 1;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::distributed {
 
 struct PlacedLandmark {
   std::int64_t id = 0;
@@ -73,4 +73,4 @@ class Placing {
   std::vector<Known> directory_;      ///< by id: the ids that this process is to know
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

@@ -8,6 +8,7 @@
 #include <thread>
 
 namespace trussmap {
+using namespace distributed;
 
 Processes::Processes() {
   require_mpi(MPI_Init(nullptr, nullptr), "anything");

@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::distributed {
 namespace {
 
 constexpr std::int64_t kGround = -1;  // what fixed landmarks are joined to
@@ -27,7 +27,7 @@ bool joins(const ShareBar& bar) {
 
 /// Per landmark of this process: the lowest number of those that hang together with it here.
 std::vector<std::int64_t> own_parts(const Placing& placing, const std::vector<ShareBar>& bars) {
-  DisjointSets sets(static_cast<int>(placing.own().size()));
+  linalg::DisjointSets sets(static_cast<int>(placing.own().size()));
   for (const ShareBar& bar : bars) {
     if (joins(bar) && placing.mine(bar.from) && placing.mine(bar.to)) {
       sets.join(static_cast<int>(placing.local(bar.from)), static_cast<int>(placing.local(bar.to)));
@@ -49,7 +49,7 @@ std::optional<std::int64_t> loose_part(const std::vector<Tie>& ties) {
   }
   int next = 0;
   for (auto& [part, place] : places) place = next++;
-  DisjointSets sets(next);
+  linalg::DisjointSets sets(next);
   for (const auto& [a, b] : ties) sets.join(places.at(a), places.at(b));
   const auto ground = places.find(kGround);
   for (const auto& [part, place] : places) {
@@ -108,4 +108,4 @@ void require_support(const Communicator& all, const Placing& placing,
                   id));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

@@ -9,7 +9,7 @@
 #include <array>
 #include <limits>
 
-namespace trussmap {
+namespace trussmap::distributed {
 namespace {
 
 constexpr int kPerLandmark = 2;  // unknowns
@@ -190,4 +190,4 @@ void tell_rigid_body_modes(const Communicator& all, const Placing& placing, Mat 
   require_petsc(MatSetNearNullSpace(K, modes.get()), "the rigid-body modes");
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

@@ -12,7 +12,7 @@
 #include "distributed/petsc_objects.hpp"
 #include "distributed/truss_share.hpp"
 
-namespace trussmap {
+namespace trussmap::distributed {
 
 struct TrussEquations {
   OwnedMatrix K;
@@ -25,4 +25,4 @@ struct TrussEquations {
 /// Tells multigrid what a truss hardly resists: the rigid-body modes.
 void tell_rigid_body_modes(const Communicator& all, const Placing& placing, Mat K);
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

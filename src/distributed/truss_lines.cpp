@@ -9,10 +9,10 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::distributed {
 namespace {
 
-LandmarkLine landmark_of(GraphLine& line) {
+LandmarkLine landmark_of(io::GraphLine& line) {
   LandmarkLine result;
   result.id = line.id("the vertex");
   result.x = line.number("x");
@@ -22,7 +22,7 @@ LandmarkLine landmark_of(GraphLine& line) {
   return result;
 }
 
-RouteLine route_of(GraphLine& line) {
+RouteLine route_of(io::GraphLine& line) {
   RouteLine result;
   result.from = line.id("the first vertex");
   result.to = line.id("the second vertex");
@@ -45,7 +45,7 @@ RouteLine route_of(GraphLine& line) {
   return result;
 }
 
-void take(GraphLine& line, TrussLines& found) {
+void take(io::GraphLine& line, TrussLines& found) {
   const std::string_view tag = line.word();
   if (tag == "VERTEX_XY") {
     found.landmarks.push_back(landmark_of(line));
@@ -55,7 +55,7 @@ void take(GraphLine& line, TrussLines& found) {
     do {
       found.fixed.push_back(
           {line.id("the fixed vertex"), static_cast<std::int64_t>(line.line_number())});
-    } while (!GraphLine(line).word().empty());
+    } while (!io::GraphLine(line).word().empty());
   } else if (!tag.empty()) {
     line.fail(fmt::format(
         "\"{}\" is no line of a truss, expected VERTEX_XY, EDGE_POINTXY or FIX: the processes of a "
@@ -73,7 +73,7 @@ TrussLines parse_truss_lines(const LineRange& lines, const std::string& file) {
   try {
     while (!text.empty()) {
       const std::size_t end = std::min(text.find('\n'), text.size());
-      GraphLine line(text.substr(0, end), number++, file);
+      io::GraphLine line(text.substr(0, end), number++, file);
       take(line, found);
       text.remove_prefix(std::min(end + 1, text.size()));
     }
@@ -85,4 +85,4 @@ TrussLines parse_truss_lines(const LineRange& lines, const std::string& file) {
   return found;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::distributed {
 
 struct LandmarkLine {
   std::int64_t id = 0;
@@ -46,4 +46,4 @@ struct TrussLines {
 
 [[nodiscard]] TrussLines parse_truss_lines(const LineRange& lines, const std::string& file);
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

@@ -15,7 +15,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::distributed {
 namespace {
 
 namespace fs = std::filesystem;
@@ -90,8 +90,8 @@ class Temporary {
   Temporary(const Communicator& all, const fs::path& path) : first_(all.rank() == 0) {
     int error = 0;
     if (first_) {
-      name_ = temporary_for(path);
-      made_ = make_temporary_file(name_);
+      name_ = files::temporary_for(path);
+      made_ = files::make_temporary_file(name_);
       if (!made_.valid()) error = errno;
     }
     const bool folder = fs::is_directory(path);
@@ -110,13 +110,13 @@ class Temporary {
     if (!first_) return 0;
     if (::rename(name_.c_str(), path.c_str()) != 0) return errno;
     renamed_ = true;
-    return keep_folder(path.parent_path()) ? 0 : errno;
+    return files::keep_folder(path.parent_path()) ? 0 : errno;
   }
 
  private:
   bool first_;
   fs::path name_;
-  Descriptor made_;
+  files::Descriptor made_;
   bool renamed_ = false;
 };
 
@@ -126,7 +126,7 @@ void write_truss(const Communicator& all, Placing& placing, const std::vector<do
                  const std::vector<double>& y, const fs::path& graph, const fs::path& path) {
   const Parts parts = formatted(all, placing, x, y, graph);
   Temporary temporary(all, path);
-  Descriptor file(::open(temporary.name().c_str(), O_WRONLY | O_CLOEXEC));
+  files::Descriptor file(::open(temporary.name().c_str(), O_WRONLY | O_CLOEXEC));
   int error = file.valid() ? 0 : errno;
   std::int64_t begin = 0;
   for (const fmt::memory_buffer& part : parts) {
@@ -140,4 +140,4 @@ void write_truss(const Communicator& all, Placing& placing, const std::vector<do
   agree_on(all, path, temporary.rename_to(path));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

@@ -9,7 +9,7 @@
 
 #include <filesystem>
 
-namespace trussmap {
+namespace trussmap::distributed {
 
 /// `x`, `y`: positions of this process's landmarks, m. Written beside `path` and renamed when all
 /// is on the disk. Throws InputError in all processes where that fails, or where the file `graph`
@@ -18,4 +18,4 @@ void write_truss(const Communicator& all, Placing& placing, const std::vector<do
                  const std::vector<double>& y, const std::filesystem::path& graph,
                  const std::filesystem::path& path);
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

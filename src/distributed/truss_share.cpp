@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::distributed {
 
 std::vector<ShareBar> share_bars(const Communicator& all, Placing& placing,
                                  const std::vector<RouteLine>& routes, const std::string& file) {
@@ -53,4 +53,4 @@ std::vector<ShareBar> share_bars(const Communicator& all, Placing& placing,
   return all.exchange(letters);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

@@ -9,7 +9,7 @@
 
 #include "distributed/placing.hpp"
 
-namespace trussmap {
+namespace trussmap::distributed {
 
 struct ShareBar {
   std::int64_t from = 0;  ///< number of a landmark; one of both is this process's at least
@@ -33,4 +33,4 @@ struct ShareBar {
 void require_support(const Communicator& all, const Placing& placing,
                      const std::vector<ShareBar>& bars);
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

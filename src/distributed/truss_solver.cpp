@@ -11,7 +11,7 @@
 // Of OpenBLAS, where it is the BLAS in use: processes are the threads here.
 extern "C" void openblas_set_num_threads(int threads) __attribute__((weak));
 
-namespace trussmap {
+namespace trussmap::distributed {
 namespace {
 
 constexpr int kRounds = 4;  // of correction from the true residual
@@ -140,4 +140,4 @@ Solution solve_equations(Mat K, Vec f, const DistributedOptions& options) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

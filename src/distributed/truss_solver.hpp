@@ -8,7 +8,7 @@
 #include "distributed/petsc_objects.hpp"
 #include "trussmap/distributed.hpp"
 
-namespace trussmap {
+namespace trussmap::distributed {
 
 struct Solution {
   OwnedVector u;
@@ -22,4 +22,4 @@ struct Solution {
 
 [[nodiscard]] Solution solve_equations(Mat K, Vec f, const DistributedOptions& options);
 
-}  // namespace trussmap
+}  // namespace trussmap::distributed

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace trussmap {
+namespace trussmap::drive {
 
 /// Of two wheels that are so far apart (m), or of what two wheels there would show.
 [[nodiscard]] inline BodyMotion body_motion(const WheelTravel& travel, double wheelbase) {
@@ -63,4 +63,4 @@ inline void add_motion(MotionRows& drive, std::size_t row, const BodyMotion& mor
   drive.pair.right[row] += shown.right;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

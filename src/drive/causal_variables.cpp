@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::drive {
 namespace {
 
 /// The sense of a wheel's motion after this travel.
@@ -75,4 +75,4 @@ void CausalVariables::take(const WheelWay& wheels, const BodyMotion& together, d
   sense_right_ = sense_after(sense_right_, wheels.travel.right);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

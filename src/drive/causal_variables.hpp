@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::drive {
 
 /// One row, by the rows before it; the names are those of row_variables.hpp.
 struct CausalRow {
@@ -72,4 +72,4 @@ class CausalVariables {
   double sense_right_ = 0.0;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

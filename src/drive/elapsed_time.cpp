@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "drive/elapsed_time.hpp"
 
-namespace trussmap {
+namespace trussmap::drive {
 
 std::vector<double> elapsed_shifts(const std::vector<DrivenRecording>& recordings) {
   std::vector<double> shifts;
@@ -19,4 +19,4 @@ std::vector<double> elapsed_shifts(const std::vector<DrivenRecording>& recording
   return shifts;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

@@ -8,10 +8,10 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::drive {
 
 /// Per recording what to add to its times, s: the first begins at 0, each where the one before
 /// ends.
 [[nodiscard]] std::vector<double> elapsed_shifts(const std::vector<DrivenRecording>& recordings);
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

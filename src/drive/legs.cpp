@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::drive {
 namespace {
 
 double distance_of(const Sighting& sighting) {
@@ -78,4 +78,4 @@ bool is_held_out(std::size_t leg, double share) {
   return std::floor((block + 1.0) * share + kRounding) > std::floor(block * share + kRounding);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

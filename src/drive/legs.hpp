@@ -17,7 +17,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::drive {
 
 struct Stop {
   double t = 0.0;         ///< s
@@ -50,4 +50,4 @@ struct Leg {
 /// blocks of five, and the blocks held out are spread evenly.
 [[nodiscard]] bool is_held_out(std::size_t leg, double share);
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::drive {
 
 struct RowMotion {
   BodyMotion body;            ///< as the wheels show it, or wheels and gyro together
@@ -73,4 +73,4 @@ struct RowMotion {
   return motion;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

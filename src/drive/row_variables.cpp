@@ -10,7 +10,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::drive {
 namespace {
 
 constexpr double kStandingSpeed = 0.005;  // m/s, of the faster wheel
@@ -212,7 +212,7 @@ RowVariables instant_variables(const MotionRows& drive, const Robot& robot,
   for (const auto& [name, values] : by_row) {
     std::vector<double>& here = variables[name];
     here.reserve(rows.size());
-    const bool rate = is_rate(name);
+    const bool rate = recording::is_rate(name);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const std::size_t row = rows[k];
       const bool meets_next =
@@ -239,4 +239,4 @@ RowVariables instant_variables(const MotionRows& drive, const Robot& robot,
   return variables;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

@@ -29,7 +29,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::drive {
 
 /// A wheel that travels less in a row is taken as standing, m: its sense tells nothing.
 inline constexpr double kMoving = 1e-6;
@@ -61,4 +61,4 @@ enum class MotionKind { standing, spinning, driving };
 /// The row that contains time t; the last one that does where two meet.
 [[nodiscard]] std::size_t row_at(const MotionRows& drive, double t);
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

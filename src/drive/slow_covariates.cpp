@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::drive {
 namespace {
 
 constexpr int kBlocks = 10;        // of a recording, equally long
@@ -62,4 +62,4 @@ std::vector<std::string> slow_covariates(const std::vector<DrivenRecording>& rec
   return names;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

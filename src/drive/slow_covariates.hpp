@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::drive {
 
 /// nullptr where the drive has none of this name.
 [[nodiscard]] const Covariate* find_covariate(const MotionRows& drive, const std::string& name);
@@ -20,4 +20,4 @@ namespace trussmap {
 [[nodiscard]] std::vector<std::string> slow_covariates(
     const std::vector<DrivenRecording>& recordings);
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

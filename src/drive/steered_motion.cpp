@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::drive {
 namespace {
 
 /// Of a tricycle's one wheel.
@@ -50,4 +50,4 @@ SteeredMotion steered_motion(const Robot& robot, double travel, double angle,
   return body;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::drive {
 
 [[nodiscard]] inline bool has_steering(const Robot& robot) {
   return robot.drive == DriveKind::tricycle || robot.drive == DriveKind::ackermann;
@@ -35,4 +35,4 @@ struct SteeredMotion {
 [[nodiscard]] SteeredMotion steered_motion(const Robot& robot, double travel, double angle,
                                            const SteeringChange& change = {});
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

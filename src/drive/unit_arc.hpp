@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::drive {
 
 /// Direction of an arc's chord times chord/path, (sin a/a, (1 - cos a)/a), and its derivative.
 struct UnitArc {
@@ -23,4 +23,4 @@ struct UnitArc {
   return {{s / a, (1.0 - c) / a}, {(a * c - s) / (a * a), (a * s - 1.0 + c) / (a * a)}};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

@@ -10,7 +10,7 @@
 
 #include <cstddef>
 
-namespace trussmap {
+namespace trussmap::drive {
 
 /// `forward` and `turn` as they were, where no gyro is taken in; where one is, up to what the
 /// changed derivatives do to its weights.
@@ -32,4 +32,4 @@ namespace trussmap {
   return drive;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::drive {
 namespace {
 
 [[noreturn]] void refuse(const Observations& recording, const std::string& what) {
@@ -21,28 +21,29 @@ namespace {
 void require_rows(const DrivenRecording& recording, const std::string& name,
                   const std::vector<double>& column) {
   if (column.size() == recording.drive.rows()) return;
-  refuse(recording, joined("column ", name, " of the drive has ", column.size(), " rows, expected ",
-                           recording.drive.rows(), " as t has"));
+  refuse(recording, text::joined("column ", name, " of the drive has ", column.size(),
+                                 " rows, expected ", recording.drive.rows(), " as t has"));
 }
 
 void require_finite(const DrivenRecording& recording, const std::string& name,
                     const std::vector<double>& column) {
   for (std::size_t row = 0; row < column.size(); ++row) {
     if (std::isfinite(column[row])) continue;
-    refuse(recording,
-           joined("column ", name, " of the drive is not finite in row ", row, ", counted from 0"));
+    refuse(recording, text::joined("column ", name, " of the drive is not finite in row ", row,
+                                   ", counted from 0"));
   }
 }
 
 void require_drive(const DrivenRecording& recording) {
   const MotionRows& drive = recording.drive;
   if (drive.rows() < 2) {
-    refuse(recording, joined("the drive has ", drive.rows(), " rows, expected two at least"));
+    refuse(recording, text::joined("the drive has ", drive.rows(), " rows, expected two at least"));
   }
   require_finite(recording, "t", drive.t);
   for (std::size_t row = 1; row < drive.rows(); ++row) {
     if (drive.t[row] > drive.t[row - 1]) continue;
-    refuse(recording, joined("t of the drive does not increase in row ", row, ", counted from 0"));
+    refuse(recording,
+           text::joined("t of the drive does not increase in row ", row, ", counted from 0"));
   }
   const auto require_column = [&](const std::string& name, const std::vector<double>& column) {
     require_rows(recording, name, column);
@@ -73,9 +74,9 @@ void require_wheelbase(const DrivenRecording& recording, const Robot& robot) {
   for (std::size_t row = 0; row < drive.pair.left.size() && drive.gyro.empty(); ++row) {
     const double turn = body_motion(drive.pair.at(row), robot.wheelbase).turn;
     if (std::abs(turn - drive.turn[row]) <= kRounding * (1.0 + std::abs(turn))) continue;
-    refuse(recording,
-           joined("its wheels turn it otherwise than two that are ", short_text(robot.wheelbase),
-                  " m apart, expected with_wheels with the robot of the model"));
+    refuse(recording, text::joined("its wheels turn it otherwise than two that are ",
+                                   text::short_text(robot.wheelbase),
+                                   " m apart, expected with_wheels with the robot of the model"));
   }
 }
 
@@ -83,8 +84,8 @@ template <typename Rows>
 void require_order(const DrivenRecording& recording, const char* name, const Rows& rows) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (std::isfinite(rows[k].t) && (k == 0 || rows[k].t >= rows[k - 1].t)) continue;
-    refuse(recording,
-           joined(name, " are not in order of time, at t = ", short_text(rows[k].t), " s"));
+    refuse(recording, text::joined(name, " are not in order of time, at t = ",
+                                   text::short_text(rows[k].t), " s"));
   }
 }
 
@@ -94,12 +95,12 @@ void require_sightings(const DrivenRecording& recording) {
   const double slack = clock_slack(drive);
   for (const Sighting& one : recording.sightings) {
     const auto refuse_it = [&](const std::string& why) {
-      refuse(recording,
-             joined("the sighting of ", one.landmark, " at t = ", short_text(one.t), " s ", why));
+      refuse(recording, text::joined("the sighting of ", one.landmark,
+                                     " at t = ", text::short_text(one.t), " s ", why));
     };
     if (one.t < drive.start() - slack || one.t > drive.t.back() + slack) {
-      refuse_it(joined("is outside the drive, expected ", short_text(drive.start()), " to ",
-                       short_text(drive.t.back()), " s"));
+      refuse_it(text::joined("is outside the drive, expected ", text::short_text(drive.start()),
+                             " to ", text::short_text(drive.t.back()), " s"));
     }
     if (std::isinf(one.range) || one.range < 0.0 || std::isinf(one.bearing)) {
       refuse_it("has a range or a bearing that is negative or infinite");
@@ -130,9 +131,9 @@ void require_loops(const DrivenRecording& recording) {
         std::isfinite(loop.dx) && std::isfinite(loop.dy) && std::isfinite(loop.dtheta);
     const bool sds = is_sd(loop.sd) && is_sd(loop.sd_heading);
     if (inside(loop.t) && inside(loop.t2) && loop.t != loop.t2 && finite && sds) continue;
-    refuse(recording,
-           joined("the loop from t = ", short_text(loop.t), " s to ", short_text(loop.t2),
-                  " s is not finite, or not between two instants of the drive"));
+    refuse(recording, text::joined("the loop from t = ", text::short_text(loop.t), " s to ",
+                                   text::short_text(loop.t2),
+                                   " s is not finite, or not between two instants of the drive"));
   }
 }
 
@@ -140,19 +141,20 @@ void require_places(const DrivenRecording& recording) {
   require_order(recording, "truth rows", recording.truth);
   for (const TruthRow& row : recording.truth) {
     if (std::isfinite(row.x) && std::isfinite(row.y) && std::isfinite(row.heading)) continue;
-    refuse(recording, joined("the truth at t = ", short_text(row.t), " s is not finite"));
+    refuse(recording,
+           text::joined("the truth at t = ", text::short_text(row.t), " s is not finite"));
   }
   require_order(recording, "fixes", recording.fixes);
   for (const Fix& fix : recording.fixes) {
     if (std::isfinite(fix.x) && std::isfinite(fix.y) && is_sd(fix.sd)) continue;
-    refuse(recording, joined("the fix at t = ", short_text(fix.t),
-                             " s is not finite, or its sd not more than 0"));
+    refuse(recording, text::joined("the fix at t = ", text::short_text(fix.t),
+                                   " s is not finite, or its sd not more than 0"));
   }
   for (const SurveyPoint& point : recording.survey) {
     const bool finite =
         std::isfinite(point.x) && std::isfinite(point.y) && !std::isinf(point.heading);
     if (finite) continue;
-    refuse(recording, joined("the survey of ", point.landmark, " is not finite"));
+    refuse(recording, text::joined("the survey of ", point.landmark, " is not finite"));
   }
 }
 
@@ -174,4 +176,4 @@ void require_well_formed(const std::vector<DrivenRecording>& recordings, const R
   for (const DrivenRecording& one : recordings) require_well_formed(one, robot);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::drive {
 
 /// How far a time may lie outside a drive, s: times are written in decimals, so that what is
 /// reckoned from them misses a start or an end by a rounding error.
@@ -21,4 +21,4 @@ namespace trussmap {
 void require_well_formed(const DrivenRecording& recording, const Robot& robot);
 void require_well_formed(const std::vector<DrivenRecording>& recordings, const Robot& robot);
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

@@ -19,7 +19,7 @@
 namespace trussmap {
 namespace {
 
-constexpr NamedValues<DriveKind, 8> kDriveNames{{
+constexpr text::NamedValues<DriveKind, 8> kDriveNames{{
     {DriveKind::differential, "differential"},
     {DriveKind::unicycle, "unicycle"},
     {DriveKind::skid_steer, "skid-steer"},
@@ -84,15 +84,15 @@ std::vector<double> reading_of(const Recording& recording, const std::string& na
   const std::vector<double>& reading = column_named(recording, name);
   const std::vector<double>& t = recording.drive.t;
   if (reading.size() != t.size()) {
-    throw std::invalid_argument(joined("recording \"", recording.name, "\": column ", name,
-                                       " of the drive has ", reading.size(), " rows, expected ",
-                                       t.size(), " as t has"));
+    throw std::invalid_argument(text::joined("recording \"", recording.name, "\": column ", name,
+                                             " of the drive has ", reading.size(),
+                                             " rows, expected ", t.size(), " as t has"));
   }
   for (std::size_t row = 0; row < reading.size(); ++row) {
-    if (is_possible_reading(reading[row])) continue;
-    refuse_drive(recording, joined("column ", name, " is ", short_text(reading[row]),
-                                   " at t = ", short_text(t[row]),
-                                   " s, expected a travel in metres or an angle in radians"));
+    if (drive::is_possible_reading(reading[row])) continue;
+    refuse_drive(recording, text::joined("column ", name, " is ", text::short_text(reading[row]),
+                                         " at t = ", text::short_text(t[row]),
+                                         " s, expected a travel in metres or an angle in radians"));
   }
   return reading;
 }
@@ -124,8 +124,9 @@ std::vector<double> turn_of_gyro(const Observations& recording, MotionRows& driv
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     turn.push_back(drive.yaw_rate[row] * drive.duration(row));
     if (std::isfinite(turn.back())) continue;
-    refuse_drive(recording, joined("has no yaw_rate at t = ", short_text(drive.t[row]),
-                                   " s, expected one in every row: it is how the robot turns"));
+    refuse_drive(recording,
+                 text::joined("has no yaw_rate at t = ", text::short_text(drive.t[row]),
+                              " s, expected one in every row: it is how the robot turns"));
   }
   drive.yaw_rate.clear();
   return turn;
@@ -144,7 +145,7 @@ void take_pair(WheelPair pair, const Robot& robot, MotionRows& drive) {
   drive.pair = std::move(pair);
   const std::size_t rows = std::min(drive.pair.left.size(), drive.pair.right.size());
   for (std::size_t row = 0; row < rows; ++row) {
-    const BodyMotion motion = body_motion(drive.pair.at(row), robot.wheelbase);
+    const BodyMotion motion = drive::body_motion(drive.pair.at(row), robot.wheelbase);
     drive.forward.push_back(motion.forward);
     drive.turn.push_back(motion.turn);
   }
@@ -171,13 +172,14 @@ void require_geometry(const Robot& robot) {
   const std::string drive = "drive " + std::string(name_of(robot.drive));
   const bool halves = robot.drive != DriveKind::skid_steer || columns % 2 == 0;
   if (columns == 0 || robot.columns.size() != columns || !halves) {
-    throw std::invalid_argument(joined(drive, " has ", robot.columns.size(), " columns, expected ",
-                                       halves && columns > 0 ? joined(columns) : "an even number"));
+    throw std::invalid_argument(
+        text::joined(drive, " has ", robot.columns.size(), " columns, expected ",
+                     halves && columns > 0 ? text::joined(columns) : "an even number"));
   }
   if (!(robot.wheelbase > 0.0)) throw std::invalid_argument("the wheelbase must be above 0 m");
   const bool long_one = robot.drive != DriveKind::skid_steer && robot.drive != DriveKind::wheels;
   if (long_one && !(robot.length > 0.0)) {
-    throw std::invalid_argument(drive + " has a length of " + short_text(robot.length) +
+    throw std::invalid_argument(drive + " has a length of " + text::short_text(robot.length) +
                                 " m, expected more than 0");
   }
   if (robot.drive == DriveKind::wheels && robot.matrix.rows() != 3) {
@@ -188,11 +190,11 @@ void require_geometry(const Robot& robot) {
 }  // namespace
 
 std::string_view name_of(DriveKind drive) {
-  return name_in(kDriveNames, drive);
+  return text::name_in(kDriveNames, drive);
 }
 
 DriveKind drive_named(std::string_view name) {
-  return value_named(kDriveNames, "drive", name);
+  return text::value_named(kDriveNames, "drive", name);
 }
 
 Eigen::MatrixXd wheel_matrix(const std::vector<WheelPlace>& places) {
@@ -256,17 +258,17 @@ DrivenRecording with_wheels(Recording recording, const Robot& robot) {
     take_unicycle(wheels, robot, result);
     return result;
   }
-  const WheelKinematics kinematics(robot);
+  const drive::WheelKinematics kinematics(robot);
   kinematics.prepare(drive, drive.rows());
   for (std::size_t k = 0; k < wheels.size(); ++k) {
     drive.wheels[k].reading = std::move(wheels[k].reading);
   }
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     if (kinematics.move(drive, row)) continue;
-    refuse_drive(result,
-                 joined("a steering angle of ", short_text(drive.wheels[1].reading[row]),
-                        " rad at t = ", short_text(drive.t[row]),
-                        " s leaves the measured wheel no way ahead, expected a smaller one"));
+    refuse_drive(
+        result, text::joined("a steering angle of ", text::short_text(drive.wheels[1].reading[row]),
+                             " rad at t = ", text::short_text(drive.t[row]),
+                             " s leaves the measured wheel no way ahead, expected a smaller one"));
   }
   return result;
 }
@@ -277,6 +279,10 @@ std::vector<DrivenRecording> with_wheels(std::vector<Recording> recordings, cons
   for (Recording& one : recordings) result.push_back(with_wheels(std::move(one), robot));
   return result;
 }
+
+}  // namespace trussmap
+
+namespace trussmap::drive {
 
 bool is_own_column(const Robot& robot, const std::string& name) {
   return std::find(robot.columns.begin(), robot.columns.end(), name) != robot.columns.end();
@@ -328,4 +334,4 @@ bool WheelKinematics::move(MotionRows& drive, std::size_t row, const SteeringCha
   return true;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

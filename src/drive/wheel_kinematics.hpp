@@ -14,7 +14,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::drive {
 
 /// Of a robot with wheels at its left and at its right that turn as one each.
 [[nodiscard]] inline bool has_left_and_right(const Robot& robot) {
@@ -48,4 +48,4 @@ class WheelKinematics {
 /// Whether a reading is one that a row may hold, m or rad: finite, and not beyond all measure.
 [[nodiscard]] bool is_possible_reading(double reading);
 
-}  // namespace trussmap
+}  // namespace trussmap::drive

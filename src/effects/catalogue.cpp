@@ -15,6 +15,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace effects;
+
 namespace {
 
 /// A pattern with a covariate's name in its "{}"s.
@@ -120,6 +122,10 @@ const CatalogueEntry* find_entry(std::string_view name) {
   return &catalogue()[static_cast<std::size_t>(record - catalogue_records().data())];
 }
 
+}  // namespace trussmap
+
+namespace trussmap::effects {
+
 const CatalogueRecord* find_record(std::string_view name) {
   name = present_name(name);
   for (const CatalogueRecord& record : catalogue_records()) {
@@ -130,6 +136,10 @@ const CatalogueRecord* find_record(std::string_view name) {
   return nullptr;
 }
 
+}  // namespace trussmap::effects
+
+namespace trussmap {
+
 std::string what_was_meant(std::string_view name) {
   const std::size_t space = std::min(name.find(' '), name.size());
   if (parse_channel(name.substr(0, space)) && name.substr(space).starts_with(" with ")) {
@@ -139,7 +149,7 @@ std::string what_was_meant(std::string_view name) {
   const CatalogueEntry* nearest = nullptr;
   std::size_t apart = given.size() / 3 + 1;  // from here on it is another word
   for (const CatalogueEntry& entry : catalogue()) {
-    const std::size_t distance = edit_distance(given, entry.name);
+    const std::size_t distance = text::edit_distance(given, entry.name);
     if (distance >= apart) continue;
     nearest = &entry;
     apart = distance;
@@ -157,7 +167,7 @@ std::string name_of(const CatalogueEntry& entry, std::string_view covariate) {
 std::string name_of(const CatalogueEntry& entry, const std::vector<ShapeParameter>& parameters) {
   std::string text;
   for (const ShapeParameter& one : parameters) {
-    text += (text.empty() ? "" : ", ") + one.name + "=" + shortest_text(one.value);
+    text += (text.empty() ? "" : ", ") + one.name + "=" + text::shortest_text(one.value);
   }
   return fmt::format("{} ({})", entry.name, text);
 }

@@ -26,7 +26,7 @@
 
 #include <toml++/toml.h>
 
-namespace trussmap {
+namespace trussmap::effects {
 namespace {
 
 namespace fs = std::filesystem;
@@ -376,22 +376,22 @@ std::string source_of(const std::vector<MadeEffect>& effects) {
   std::string text =
       "// Made of src/effects/catalogue by trussmap_catalogue_maker.\n"
       "#include \"effects/catalogue_record.hpp\"\n\n"
-      "namespace trussmap {\n\n"
+      "namespace trussmap::effects {\n\n"
       "const std::vector<CatalogueRecord>& catalogue_records() {\n"
       "  static const std::vector<CatalogueRecord> records{\n";
   for (const MadeEffect& one : effects) text += one.code + ",\n";
-  return text + "  };\n  return records;\n}\n\n}  // namespace trussmap\n";
+  return text + "  };\n  return records;\n}\n\n}  // namespace trussmap::effects\n";
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::effects
 
 int main(int count, char** arguments) {
   try {
     if (count < 3)
       throw std::runtime_error("usage: trussmap_catalogue_maker OUT.cpp FILE.toml ...");
-    const std::string source =
-        trussmap::source_of(trussmap::read_all({arguments + 2, arguments + count}));
+    const std::string source = trussmap::effects::source_of(
+        trussmap::effects::read_all({arguments + 2, arguments + count}));
     std::ofstream out(arguments[1], std::ios::binary);
     out << source;
     if (!out.flush()) throw std::runtime_error(std::string(arguments[1]) + ": cannot be written");

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::effects {
 
 /// What an effect does to a robot, in its owner's words. "{}" stands for the covariate's name in
 /// words.
@@ -63,4 +63,4 @@ struct CatalogueRecord {
 /// As find_entry.
 [[nodiscard]] const CatalogueRecord* find_record(std::string_view name);
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

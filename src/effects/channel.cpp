@@ -11,7 +11,7 @@ namespace trussmap {
 const std::vector<ChannelFacts>& channels() {
   static const std::vector<ChannelFacts> all = [] {
     std::vector<ChannelFacts> facts;
-    for (const ChannelRecord& one : channel_records()) facts.push_back(one.facts);
+    for (const effects::ChannelRecord& one : effects::channel_records()) facts.push_back(one.facts);
     return facts;
   }();
   return all;
@@ -23,7 +23,7 @@ std::optional<std::size_t> wheel_of(Channel channel) {
 }
 
 const ChannelFacts& facts_of(Channel channel) {
-  return record_of(channel).facts;
+  return effects::record_of(channel).facts;
 }
 
 std::string_view name_of(Channel channel) {

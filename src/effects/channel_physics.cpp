@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::effects {
 
 ActsOn acts_on(Channel channel) {
   return record_of(channel).target.kind;
@@ -45,12 +45,12 @@ bool is_of_drive(Channel channel, const Robot& robot) {
 
 void require_of_drive(const Effect& effect, const Robot& robot) {
   if (is_of_drive(effect.channel, robot)) return;
-  throw std::invalid_argument(joined("effect \"", effect.name, "\": channel \"",
-                                     name_of(effect.channel), "\" is of another drive than ",
-                                     name_of(robot.drive)));
+  throw std::invalid_argument(text::joined("effect \"", effect.name, "\": channel \"",
+                                           name_of(effect.channel), "\" is of another drive than ",
+                                           name_of(robot.drive)));
 }
 
-DrivePattern drive_pattern(Channel channel, double g, const RowMotion& row) {
+DrivePattern drive_pattern(Channel channel, double g, const drive::RowMotion& row) {
   const ChannelRecord& physics = record_of(channel);
   DrivePattern pattern;
   if (physics.wheel_pattern != nullptr) pattern = physics.wheel_pattern(g, row);
@@ -82,4 +82,4 @@ Sighting without(Channel channel, double g, const Sighting& sighting) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

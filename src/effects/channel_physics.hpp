@@ -48,7 +48,7 @@
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
 
-namespace trussmap {
+namespace trussmap::effects {
 
 /// Where a channel acts, and so where its shapes are taken.
 enum class ActsOn { drives, readings, views };
@@ -112,7 +112,7 @@ struct ViewPattern {
 
 /// What g of this channel adds to a row; with g = f, the column of a coefficient. Nothing where the
 /// channel acts on views. Where the gyro reads, the row moves by what wheels and gyro say together.
-[[nodiscard]] DrivePattern drive_pattern(Channel channel, double g, const RowMotion& row);
+[[nodiscard]] DrivePattern drive_pattern(Channel channel, double g, const drive::RowMotion& row);
 /// The same for a view, truth row or fix at this speed (m/s) and turn rate (rad/s).
 [[nodiscard]] ViewPattern view_pattern(Channel channel, double g, double speed, double turn_rate);
 
@@ -135,4 +135,4 @@ struct ViewPattern {
 /// A sighting freed from g of the channel range, range_scale, bearing or sighting_yaw.
 [[nodiscard]] Sighting without(Channel channel, double g, const Sighting& sighting);
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::effects {
 
 struct ChannelTarget {
   ActsOn kind = ActsOn::drives;
@@ -40,8 +40,8 @@ struct ChannelRecord {
   bool (*of_drive)(const Robot& robot) = nullptr;
   // What g adds, nullptr: nothing. To what the wheels say of a row, or to its compass reading; to
   // the gyro's turn, rad; to a view, truth row or fix.
-  DrivePattern (*wheel_pattern)(double g, const RowMotion& row) = nullptr;
-  double (*gyro_pattern)(double g, const RowMotion& row) = nullptr;
+  DrivePattern (*wheel_pattern)(double g, const drive::RowMotion& row) = nullptr;
+  double (*gyro_pattern)(double g, const drive::RowMotion& row) = nullptr;
   ViewPattern (*view_pattern)(double g, double speed, double turn_rate) = nullptr;
   /// The yaw rate [rad/s] that the gyro would have read without g; nullptr: what it read.
   double (*yaw_rate_without)(double g, double yaw_rate) = nullptr;
@@ -53,14 +53,18 @@ struct ChannelRecord {
   bool reading = false;
   /// What an error is drawn against where its shape goes with nothing.
   std::string_view drawn_against = "speed";
+  /// Its error may go with any variable of a row; what acts per event, or is a place, has none.
+  bool varies = true;
 
   ChannelPhrase phrase;
   std::string_view noun;  ///< what its error is called in a name: "turning error"
   std::string_view axis;  ///< and at an axis: "robot turns more than measured by"
+  /// What a factor 1 + g below zero means; empty where nothing can have one.
+  std::string_view below_zero = {};
 };
 
 /// A record per channel, in their order.
 [[nodiscard]] const std::vector<ChannelRecord>& channel_records();
 [[nodiscard]] const ChannelRecord& record_of(Channel channel);
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

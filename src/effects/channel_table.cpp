@@ -6,6 +6,7 @@
 #include "drive/row_motion.hpp"
 #include "drive/steered_motion.hpp"
 #include "effects/channel_record.hpp"
+#include "effects/steering_patterns.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,8 +15,10 @@
 #include <string>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::effects {
 namespace {
+
+using drive::RowMotion;
 
 constexpr ChannelTarget kReadings{.kind = ActsOn::readings};
 constexpr ChannelTarget kSightings{.kind = ActsOn::views, .sightings = true};
@@ -35,51 +38,6 @@ bool goes_sideways(const Robot& robot) {
 
 DrivePattern as_pattern(const BodyMotion& motion) {
   return {.advance = motion.forward, .slip = motion.sideways, .turn = motion.turn};
-}
-
-/// What so much more of one column's reading adds.
-DrivePattern more_of(const WheelColumn& column, std::size_t row, double reading) {
-  const std::array<double, 3>& by = column.by_reading[row];
-  return {.advance = by[0] * reading, .slip = by[1] * reading, .turn = by[2] * reading};
-}
-
-/// What more of the steering angle adds, as a function of it.
-template <typename More>
-DrivePattern steering_pattern(const RowMotion& row, const More& more) {
-  if (row.wheels == nullptr) return {};
-  for (const WheelColumn& column : *row.wheels) {
-    if (column.steers) return more_of(column, row.row, more(column.reading[row.row]));
-  }
-  return {};
-}
-
-/// What a wheel g further to the left adds (drive/steered_motion.hpp), by its derivative.
-DrivePattern measured_left_pattern(double g, const RowMotion& row) {
-  if (row.wheels == nullptr) return {};
-  const WheelColumn& travel = row.wheels->front();
-  const auto [ahead, aside, turn] = travel.by_reading[row.row];
-  const double more = g * travel.reading[row.row] * turn;
-  return {.advance = more * ahead, .turn = more * turn};
-}
-
-DrivePattern steered_left_pattern(double g, const RowMotion& row) {
-  if (row.wheels == nullptr) return {};
-  const WheelColumn& travel = row.wheels->front();
-  const auto [ahead, aside, turn] = travel.by_reading[row.row];
-  const double more = g * travel.reading[row.row] * turn;
-  if (row.front) return {.advance = more};
-  return {.advance = -more * (ahead - 1.0), .turn = -more * turn};
-}
-
-/// What a share g of the difference adds between the travel of a rear and of the steered wheel.
-DrivePattern other_axle_pattern(double g, const RowMotion& row) {
-  constexpr double kLeastShare = 0.1;  // of the steered wheel's way in the rear one's
-  if (row.wheels == nullptr) return {};
-  const WheelColumn& travel = row.wheels->front();
-  const auto [ahead, aside, turn] = travel.by_reading[row.row];
-  const double ratio =
-      row.front ? 1.0 / std::max(ahead, kLeastShare) : 1.0 / std::hypot(1.0, row.length * turn);
-  return more_of(travel, row.row, g * (ratio - 1.0) * travel.reading[row.row]);
 }
 
 bool has_rear_wheel(const Robot& robot) {
@@ -108,27 +66,30 @@ std::vector<ChannelRecord> single_records() {
        .of_drive = has_two_wheels,
        .wheel_pattern =
            [](double g, const RowMotion& row) {
-             const double more = g * wheel_travel(row.body, row.wheelbase).left;
-             return as_pattern(body_motion({more, 0.0}, row.wheelbase));
+             const double more = g * drive::wheel_travel(row.body, row.wheelbase).left;
+             return as_pattern(drive::body_motion({more, 0.0}, row.wheelbase));
            },
        .phrase = {"the left wheel rolls", "further than it says", "less far than it says"},
        .noun = "left wheel's error",
-       .axis = "left wheel rolls further than it says by"},
+       .axis = "left wheel rolls further than it says by",
+       .below_zero = "the left wheel counts backwards: the sign of its ticks?"},
       {.facts = {right, "right", "", 0.1, "travel of the right wheel"},
        .of_drive = has_two_wheels,
        .wheel_pattern =
            [](double g, const RowMotion& row) {
-             const double more = g * wheel_travel(row.body, row.wheelbase).right;
-             return as_pattern(body_motion({0.0, more}, row.wheelbase));
+             const double more = g * drive::wheel_travel(row.body, row.wheelbase).right;
+             return as_pattern(drive::body_motion({0.0, more}, row.wheelbase));
            },
        .phrase = {"the right wheel rolls", "further than it says", "less far than it says"},
        .noun = "right wheel's error",
-       .axis = "right wheel rolls further than it says by"},
+       .axis = "right wheel rolls further than it says by",
+       .below_zero = "the right wheel counts backwards: the sign of its ticks?"},
       {.facts = {wheels, "wheels", "", 0.1, "travel of all wheels"},
        .wheel_pattern = [](double g, const RowMotion& row) { return as_pattern(g * row.body); },
        .phrase = {"all wheels are", "larger than nominal", "smaller than nominal"},
        .noun = "error of all wheels",
-       .axis = "all wheels larger than nominal by"},
+       .axis = "all wheels larger than nominal by",
+       .below_zero = "all wheels count backwards: the sign of their ticks?"},
       {.facts = {difference, "difference", "", 0.1, "right wheel's travel over left's"},
        .of_drive = has_two_wheels,
        .wheel_pattern =
@@ -145,7 +106,10 @@ std::vector<ChannelRecord> single_records() {
        .drawn_against = "turn_rate",
        .phrase = {"the robot turns", "more than its wheels say", "less than its wheels say"},
        .noun = "turning error",
-       .axis = "robot turns more than measured by"},
+       .axis = "robot turns more than measured by",
+       .below_zero =
+           "the robot turns the other way round than its wheels say: left and right exchanged, "
+           "or all wheels counting backwards?"},
       {.facts = {drift, "drift", "rad/s", 0.01, "rotation with time"},
        .wheel_pattern = [](double g,
                            const RowMotion& row) { return DrivePattern{.turn = g * row.duration}; },
@@ -155,12 +119,14 @@ std::vector<ChannelRecord> single_records() {
        .axis = "heading drifts to the left by"},
       {.facts = {advance, "advance", "m", 0.02, "travel per event"},
        .wheel_pattern = [](double g, const RowMotion&) { return DrivePattern{.advance = g}; },
+       .varies = false,
        .phrase = {"each event moves the robot", "forward", "back"},
        .noun = "travel error per event",
        .axis = "robot moves forward per event by"},
       {.facts = {rotate, "rotate", "rad", 0.05, "rotation per event"},
        .wheel_pattern = [](double g, const RowMotion&) { return DrivePattern{.turn = g}; },
        .drawn_against = "turn_rate",
+       .varies = false,
        .phrase = {"each event turns the robot by", "to the left", "to the right"},
        .noun = "turning error per event",
        .axis = "robot turns left per event by"},
@@ -304,21 +270,17 @@ std::vector<ChannelRecord> single_records() {
        .noun = "error of the way to the side",
        .axis = "robot moves sideways more than measured by"},
       {.facts = {steer, "steer", "rad", 0.1, "steering angle"},
-       .of_drive = has_steering,
-       .wheel_pattern =
-           [](double g, const RowMotion& row) {
-             return steering_pattern(row, [g](double) { return g; });
-           },
+       .of_drive = drive::has_steering,
+       .wheel_pattern = [](double g,
+                           const RowMotion& row) { return more_steering_pattern(g, 0.0, row); },
        .phrase = {"the steered wheel points", "further to the left than it says",
                   "further to the right than it says"},
        .noun = "steering offset",
        .axis = "steering further left than measured by"},
       {.facts = {steer_gain, "steer_gain", "", 0.1, "steering angle, in proportion"},
-       .of_drive = has_steering,
-       .wheel_pattern =
-           [](double g, const RowMotion& row) {
-             return steering_pattern(row, [g](double angle) { return g * angle; });
-           },
+       .of_drive = drive::has_steering,
+       .wheel_pattern = [](double g,
+                           const RowMotion& row) { return more_steering_pattern(0.0, g, row); },
        .phrase = {"the steered wheel turns", "further than it says", "less far than it says"},
        .noun = "error of the steering's gain",
        .axis = "steered wheel turns further than it says by"},
@@ -357,23 +319,26 @@ std::vector<ChannelRecord> single_records() {
        .of_drive = has_rear_wheel,
        .wheel_pattern = measured_left_pattern,
        .drawn_against = "turn_rate",
+       .varies = false,
        .phrase = {"the travel is that of a wheel", "further to the left than stated",
                   "further to the right than stated"},
        .noun = "measured wheel's place",
        .axis = "measured wheel further left than stated by"},
       {.facts = {steer_left, "steer_left", "m", 0.3,
                  "place of the wheel whose steering angle is read, to the left"},
-       .of_drive = has_steering,
+       .of_drive = drive::has_steering,
        .wheel_pattern = steered_left_pattern,
        .drawn_against = "turn_rate",
+       .varies = false,
        .phrase = {"the steering angle is that of a wheel", "further to the left than stated",
                   "further to the right than stated"},
        .noun = "steered wheel's place",
        .axis = "steered wheel further left than stated by"},
       {.facts = {other_axle, "other_axle", "", 1.0, "axle whose travel is read"},
-       .of_drive = has_steering,
+       .of_drive = drive::has_steering,
        .wheel_pattern = other_axle_pattern,
        .drawn_against = "turn_rate",
+       .varies = false,
        .phrase = {"the travel is that of the other axle by", "of the difference",
                   "of the difference less"},
        .noun = "other axle's travel",
@@ -383,8 +348,8 @@ std::vector<ChannelRecord> single_records() {
 /// Whether the n-th of a drive's own wheels rolls; one that is steered has the channel wheels.
 template <std::size_t n>
 bool has_wheel(const Robot& robot) {
-  return !has_two_wheels(robot) && robot.drive != DriveKind::unicycle && !has_steering(robot) &&
-         n < robot.columns.size();
+  return !has_two_wheels(robot) && robot.drive != DriveKind::unicycle &&
+         !drive::has_steering(robot) && n < robot.columns.size();
 }
 
 template <std::size_t n>
@@ -412,10 +377,12 @@ ChannelRecord wheel_record() {
                     with_word("travel of the {} wheel", which)},
           .of_drive = has_wheel<n>,
           .wheel_pattern = wheel_pattern<n>,
+          .varies = false,
           .phrase = {with_word("the {} wheel rolls", which), "further than it says",
                      "less far than it says"},
           .noun = with_word("{} wheel's error", which),
-          .axis = with_word("{} wheel rolls further than it says by", which)};
+          .axis = with_word("{} wheel rolls further than it says by", which),
+          .below_zero = with_word("the {} wheel counts backwards: the sign of its ticks?", which)};
 }
 
 template <std::size_t... n>
@@ -444,4 +411,4 @@ const ChannelRecord& record_of(Channel channel) {
   return channel_records().at(static_cast<std::size_t>(channel));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

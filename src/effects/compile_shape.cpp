@@ -16,6 +16,8 @@
 #include <muParser.h>
 
 namespace trussmap {
+using namespace effects;
+
 namespace {
 
 double sign(double value) {
@@ -315,6 +317,10 @@ class SharedShapes {
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::effects {
+
 std::shared_ptr<const CompiledShape> compile_shape(const std::string& text) {
   static SharedShapes shapes;
   return shapes.get(text);
@@ -323,6 +329,10 @@ std::shared_ptr<const CompiledShape> compile_shape(const std::string& text) {
 std::size_t shapes_read() {
   return reads;
 }
+
+}  // namespace trussmap::effects
+
+namespace trussmap {
 
 Shape::Shape(const char* text) : compiled_(compile_shape(text)) {}
 Shape::Shape(const std::string& text) : compiled_(compile_shape(text)) {}

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::effects {
 
 /// A shape's text and what reading it has shown (shape.hpp).
 struct ShapeFacts {
@@ -47,4 +47,4 @@ class CompiledShape {
 /// How often an expression has been read in this process.
 [[nodiscard]] std::size_t shapes_read();
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

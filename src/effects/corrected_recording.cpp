@@ -15,16 +15,16 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::effects {
 namespace {
 
 void free_sightings(Channel channel, const std::vector<double>& g, DrivenRecording& recording) {
   for (Sighting& sighting : recording.sightings) {
     if (sighting.standing() && channel != Channel::sighting_yaw) continue;
-    sighting = without(channel, g[row_at(recording.drive, sighting.t)], sighting);
+    sighting = without(channel, g[drive::row_at(recording.drive, sighting.t)], sighting);
     if (!std::isnan(sighting.range) && !(sighting.range > 0.0)) {
-      throw std::invalid_argument("leaves a range of " + short_text(sighting.range) +
-                                  " m at t = " + short_text(sighting.t) + " s");
+      throw std::invalid_argument("leaves a range of " + text::short_text(sighting.range) +
+                                  " m at t = " + text::short_text(sighting.t) + " s");
     }
   }
 }
@@ -78,8 +78,9 @@ std::vector<double> gains_of(const Effect& effect, const RowVariables& variables
 void free_drive(Channel channel, const std::vector<double>& g, const Robot& robot,
                 MotionRows& drive) {
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const DrivePattern more = drive_pattern(channel, g[row], shown_motion(drive, row, robot));
-    add_motion(drive, row, {more.advance, more.slip, more.turn}, robot);
+    const DrivePattern more =
+        drive_pattern(channel, g[row], drive::shown_motion(drive, row, robot));
+    drive::add_motion(drive, row, {more.advance, more.slip, more.turn}, robot);
     if (drive.has_gyro())
       drive.yaw_rate[row] = yaw_rate_without(channel, g[row], drive.yaw_rate[row]);
   }
@@ -110,4 +111,4 @@ DrivenRecording corrected_recording(const DrivenRecording& recording, const Mode
   return corrected;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

@@ -16,7 +16,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::effects {
 
 /// Throws std::invalid_argument where an effect has no shape.
 void require_shapes(const Effect& effect);
@@ -37,4 +37,4 @@ void free_drive(Channel channel, const std::vector<double>& g, const Robot& robo
                                                   const Model& model, const RowVariables& variables,
                                                   int session);
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

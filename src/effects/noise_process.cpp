@@ -6,7 +6,7 @@
 namespace trussmap {
 namespace {
 
-constexpr NamedValues<ProcessKind, 8> kProcessNames{
+constexpr text::NamedValues<ProcessKind, 8> kProcessNames{
     {{ProcessKind::white, "white"},
      {ProcessKind::per_leg, "per leg"},
      {ProcessKind::per_session, "per session"},
@@ -19,7 +19,7 @@ constexpr NamedValues<ProcessKind, 8> kProcessNames{
 }  // namespace
 
 std::string_view name_of(ProcessKind process) {
-  return name_in(kProcessNames, process);
+  return text::name_in(kProcessNames, process);
 }
 
 bool is_correlated(ProcessKind process) {
@@ -32,7 +32,7 @@ bool is_chain(ProcessKind process) {
 }
 
 ProcessKind process_named(std::string_view name) {
-  return value_named(kProcessNames, "process", name);
+  return text::value_named(kProcessNames, "process", name);
 }
 
 }  // namespace trussmap

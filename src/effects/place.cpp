@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::effects {
 
 std::optional<Vector2> place_of(const Effect& effect) {
   if (effect.shape.size() != 1 || effect.per_session) return std::nullopt;
@@ -16,4 +16,4 @@ std::optional<Vector2> place_of(const Effect& effect) {
   return x && y ? std::optional(Vector2(*x, *y)) : std::nullopt;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

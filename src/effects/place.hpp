@@ -9,9 +9,9 @@
 
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::effects {
 
 /// Centre of an effect that acts at one place alone, m.
 [[nodiscard]] std::optional<Vector2> place_of(const Effect& effect);
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

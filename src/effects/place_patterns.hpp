@@ -4,7 +4,7 @@
 // Patterns of shapes that act at a place: parameters x, y and r, in metres.
 #pragma once
 
-namespace trussmap {
+namespace trussmap::effects {
 
 /// A bell about (x, y), of standard deviation r.
 inline constexpr const char* kBellPattern = "exp(-((x-{x})^2+(y-{y})^2)/(2*{r}^2))";
@@ -13,4 +13,4 @@ inline constexpr const char* kDiscPattern = "(1+sign({r}^2-(x-{x})^2-(y-{y})^2))
 /// The distance from (x, y).
 inline constexpr const char* kDistancePattern = "sqrt((x-{x})^2+(y-{y})^2)";
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

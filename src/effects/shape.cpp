@@ -27,7 +27,7 @@ std::string state_in(std::size_t row, const std::vector<std::string>& names,
                      const std::vector<const double*>& columns) {
   std::string text;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    text += (k == 0 ? "" : ", ") + names[k] + " = " + short_text(columns[k][row]);
+    text += (k == 0 ? "" : ", ") + names[k] + " = " + text::short_text(columns[k][row]);
   }
   return "(" + text + ")";
 }
@@ -59,7 +59,7 @@ std::optional<double> Shape::parameter(std::string_view name) const {
 }
 
 std::optional<std::string> Shape::argument_of(std::string_view function) const {
-  const ShapeFacts& facts = compiled_->facts();
+  const effects::ShapeFacts& facts = compiled_->facts();
   if (facts.function.empty() || facts.function != function) return std::nullopt;
   return facts.argument;
 }
@@ -90,7 +90,7 @@ std::vector<double> Shape::values(const RowVariables& variables) const {
 std::string filled(std::string pattern, const std::vector<ShapeParameter>& parameters) {
   for (const ShapeParameter& one : parameters) {
     const std::string open = "{" + one.name + "}";
-    const std::string number = shortest_text(one.value);
+    const std::string number = text::shortest_text(one.value);
     const std::string text = number.starts_with('-') ? "(" + number + ")" : number;
     for (std::size_t at = pattern.find(open); at != std::string::npos; at = pattern.find(open)) {
       pattern.replace(at, open.size(), text);

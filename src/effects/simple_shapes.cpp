@@ -9,7 +9,7 @@
 #include <memory>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::effects {
 namespace {
 
 class Constant : public CompiledShape {
@@ -51,4 +51,4 @@ Shape cosine_of(const std::string& variable) {
   return Shape(std::make_shared<const Wave>("cos", variable, [](double x) { return std::cos(x); }));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

@@ -8,7 +8,7 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::effects {
 
 /// "1".
 [[nodiscard]] Shape constant_shape();
@@ -17,4 +17,4 @@ namespace trussmap {
 [[nodiscard]] Shape sine_of(const std::string& variable);
 [[nodiscard]] Shape cosine_of(const std::string& variable);
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

@@ -11,15 +11,16 @@
 #include <stdexcept>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::effects {
 namespace {
 
 /// Per row; `names` of the effects.
-std::vector<SteeringChange> changes_of(const MotionRows& drive, const std::vector<Effect>& effects,
-                                       const RowVariables& variables, int session,
-                                       std::string& names) {
+std::vector<drive::SteeringChange> changes_of(const MotionRows& drive,
+                                              const std::vector<Effect>& effects,
+                                              const RowVariables& variables, int session,
+                                              std::string& names) {
   const std::vector<double>& angle = drive.wheels[1].reading;
-  std::vector<SteeringChange> more(drive.rows());
+  std::vector<drive::SteeringChange> more(drive.rows());
   for (const Effect& effect : effects) {
     if (!is_steering(effect.channel)) continue;
     names += (names.empty() ? "effect \"" : "\", \"") + effect.name;
@@ -53,7 +54,7 @@ bool is_of_steered_drive(Channel channel) {
   return is_steering(channel) || channel == Channel::other_axle;
 }
 
-void add_steering(Channel channel, double g, double angle, SteeringChange& change) {
+void add_steering(Channel channel, double g, double angle, drive::SteeringChange& change) {
   if (channel == Channel::steer) change.angle += g;
   if (channel == Channel::steer_gain) {
     change.angle += g * angle;
@@ -72,10 +73,11 @@ bool leave_a_way(const std::vector<Effect>& effects, const MotionRows& drive, co
                  const RowVariables& variables, int session) {
   if (!steers(effects) || !has_steered_wheel(drive)) return true;
   std::string names;
-  const std::vector<SteeringChange> more = changes_of(drive, effects, variables, session, names);
+  const std::vector<drive::SteeringChange> more =
+      changes_of(drive, effects, variables, session, names);
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const double travel = drive.wheels[0].reading[row];
-    if (!steered_motion(robot, travel, drive.wheels[1].reading[row], more[row]).possible) {
+    if (!drive::steered_motion(robot, travel, drive.wheels[1].reading[row], more[row]).possible) {
       return false;
     }
   }
@@ -89,22 +91,24 @@ MotionRows steered(MotionRows drive, const Robot& robot, const std::vector<Effec
     throw std::logic_error("steering is taken in once, and before the gyro");
   }
   std::string names;
-  const std::vector<SteeringChange> more = changes_of(drive, effects, variables, session, names);
+  const std::vector<drive::SteeringChange> more =
+      changes_of(drive, effects, variables, session, names);
   drive.steered.reserve(drive.rows());
   drive.wheels[1].gain.resize(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const double travel = drive.wheels[0].reading[row];
     const double angle = drive.wheels[1].reading[row];
-    const SteeredMotion after = steered_motion(robot, travel, angle, more[row]);
+    const drive::SteeredMotion after = drive::steered_motion(robot, travel, angle, more[row]);
     if (!after.possible) {
-      throw std::invalid_argument(joined(
-          names, "\": leaves the measured wheel no way ahead at t = ", short_text(drive.t[row]),
-          " s, with a steering angle of ", short_text(angle + more[row].angle),
+      throw std::invalid_argument(text::joined(
+          names,
+          "\": leaves the measured wheel no way ahead at t = ", text::short_text(drive.t[row]),
+          " s, with a steering angle of ", text::short_text(angle + more[row].angle),
           " rad, expected coefficients that leave it one"));
     }
     // What replicas and noise made of the row stays.
-    const Eigen::Vector3d added = after.motion - steered_motion(robot, travel, angle).motion;
-    add_motion(drive, row, {added[0], 0.0, added[2]}, robot);
+    const Eigen::Vector3d added = after.motion - drive::steered_motion(robot, travel, angle).motion;
+    drive::add_motion(drive, row, {added[0], 0.0, added[2]}, robot);
     drive.steered.push_back({added[0], added[2]});
     drive.wheels[1].gain[row] = 1.0 + more[row].gain;
     for (std::size_t k = 0; k < 2; ++k) {
@@ -115,4 +119,4 @@ MotionRows steered(MotionRows drive, const Robot& robot, const std::vector<Effec
   return drive;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

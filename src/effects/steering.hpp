@@ -18,7 +18,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::effects {
 
 /// steer, steer_gain, wheel_left or steer_left.
 [[nodiscard]] bool is_steering(Channel channel);
@@ -27,7 +27,7 @@ namespace trussmap {
 /// is_steering, or other_axle: of robots that steer alone.
 [[nodiscard]] bool is_of_steered_drive(Channel channel);
 /// What g of one of them adds where this angle [rad] is read.
-void add_steering(Channel channel, double g, double angle, SteeringChange& change);
+void add_steering(Channel channel, double g, double angle, drive::SteeringChange& change);
 /// Whether any effect is of one.
 [[nodiscard]] bool steers(const std::vector<Effect>& effects);
 
@@ -45,4 +45,4 @@ void add_steering(Channel channel, double g, double angle, SteeringChange& chang
                                  const std::vector<Effect>& effects, const RowVariables& variables,
                                  int session);
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

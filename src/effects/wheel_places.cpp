@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace trussmap {
+namespace trussmap::effects {
 namespace {
 
 using std::numbers::pi;
@@ -55,4 +55,4 @@ std::vector<WheelPlace> wheel_places(const Robot& robot) {
   return robot.places;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

@@ -18,10 +18,10 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::effects {
 
 /// One per column; of a tricycle its steered wheel, of an ackermann robot its measured one, beside
 /// no place for the steering. None where `wheels` has a matrix alone.
 [[nodiscard]] std::vector<WheelPlace> wheel_places(const Robot& robot);
 
-}  // namespace trussmap
+}  // namespace trussmap::effects

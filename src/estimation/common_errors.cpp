@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 constexpr double kTurnPerTime = 0.01;  // rad/s: a drift's and a gyro bias's weak prior
@@ -32,8 +32,8 @@ std::vector<EffectPattern> hard_iron(const std::vector<DrivenRecording>& recordi
   for (EffectPattern& one : result) one.name = "hard iron";
   for (const DrivenRecording& recording : recordings) {
     const MotionRows& drive = recording.drive;
-    std::vector<DrivePattern> sine(drive.rows());
-    std::vector<DrivePattern> cosine(drive.rows());
+    std::vector<effects::DrivePattern> sine(drive.rows());
+    std::vector<effects::DrivePattern> cosine(drive.rows());
     for (std::size_t row = 0; row < drive.heading.size(); ++row) {
       if (!std::isfinite(drive.heading[row])) continue;
       const double heading = heading_under(drive.heading[row], a, b);
@@ -50,7 +50,7 @@ std::vector<EffectPattern> hard_iron(const std::vector<DrivenRecording>& recordi
 /// per time may have gone round in it: its column is no straight line then.
 bool may_go_round_in_a_row(const DrivenRecording& recording) {
   const MotionRows& drive = recording.drive;
-  const double most = 0.5 * kFullTurn / kTurnPerTime;
+  const double most = 0.5 * geometry::kFullTurn / kTurnPerTime;
   for (std::size_t row = 1; row < drive.rows(); ++row) {
     if (drive.t[row] - drive.t[row - 1] > most) return true;
   }
@@ -62,20 +62,24 @@ bool may_go_round_in_a_row(const DrivenRecording& recording) {
 std::vector<Effect> common_errors(const std::vector<DrivenRecording>& recordings) {
   // The catalogue's names and shapes, written out: who only builds maps does without it.
   std::vector<Effect> result{
-      {"wheel diameter ratio", Channel::difference, {constant_shape()}, {0.0}},
-      {"wheelbase", Channel::turn, {constant_shape()}, {0.0}}};
+      {"wheel diameter ratio", Channel::difference, {effects::constant_shape()}, {0.0}},
+      {"wheelbase", Channel::turn, {effects::constant_shape()}, {0.0}}};
   const bool lasting = std::any_of(recordings.begin(), recordings.end(), may_go_round_in_a_row);
-  if (!lasting) result.push_back({"heading drift", Channel::drift, {constant_shape()}, {0.0}});
+  if (!lasting)
+    result.push_back({"heading drift", Channel::drift, {effects::constant_shape()}, {0.0}});
   const bool compass =
       std::any_of(recordings.begin(), recordings.end(),
                   [](const DrivenRecording& recording) { return recording.drive.has_compass(); });
   const bool gyro =
       std::any_of(recordings.begin(), recordings.end(),
                   [](const DrivenRecording& recording) { return recording.drive.has_gyro(); });
-  if (gyro && !lasting) result.push_back({"gyro bias", Channel::gyro, {constant_shape()}, {0.0}});
+  if (gyro && !lasting)
+    result.push_back({"gyro bias", Channel::gyro, {effects::constant_shape()}, {0.0}});
   if (compass) {
-    result.push_back(
-        {"hard iron", Channel::compass, {sine_of("heading"), cosine_of("heading")}, {0.0, 0.0}});
+    result.push_back({"hard iron",
+                      Channel::compass,
+                      {effects::sine_of("heading"), effects::cosine_of("heading")},
+                      {0.0, 0.0}});
   }
   return result;
 }
@@ -113,4 +117,4 @@ EffectParameters common_error_columns(const std::vector<DrivenRecording>& record
   return border;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

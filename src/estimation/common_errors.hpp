@@ -17,7 +17,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// As the catalogue has them, coefficients 0; those of the compass only where one was read, those
 /// per time only where no row lasts minutes.
@@ -32,4 +32,4 @@ namespace trussmap {
                                                     const Robot& robot,
                                                     const Eigen::VectorXd& coefficients = {});
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -15,7 +15,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 constexpr double kUnchecked = 1e-6;
@@ -24,14 +24,14 @@ constexpr double kNoncentrality = 17.08;
 /// r' R^-1 r over what is checked, and how many directions that are.
 void test_against_others(const Eigen::VectorXd& r, const Eigen::MatrixXd& R,
                          CheckedMeasurement& result) {
-  const SymmetricModes axes = symmetric_modes(R);
+  const linalg::SymmetricModes axes = linalg::symmetric_modes(R);
   for (Eigen::Index k = 0; k < r.size(); ++k) {
     const double share = axes.eigenvalues[k];
     if (share < kUnchecked) continue;
     ++result.checked;
     result.statistic += std::pow(axes.eigenvectors.col(k).dot(r), 2) / share;
   }
-  result.p_value = chi2_p_value(result.statistic, result.checked);
+  result.p_value = statistics::chi2_p_value(result.statistic, result.checked);
 }
 
 /// `rows` has the measurement at full weight.
@@ -99,7 +99,8 @@ std::vector<OutlierTest> outliers(const std::vector<CheckedMeasurement>& checked
   std::vector<OutlierTest> result;
   for (const CheckedMeasurement& one : checked) {
     const double statistic = one.statistic / dispersion;
-    const double p = bonferroni(chi2_p_value(statistic, one.checked), count);
+    const double p =
+        statistics::bonferroni(statistics::chi2_p_value(statistic, one.checked), count);
     if (p < level) result.push_back({one.measurement, one.checked, statistic, p});
   }
   std::stable_sort(result.begin(), result.end(), [](const OutlierTest& a, const OutlierTest& b) {
@@ -109,4 +110,4 @@ std::vector<OutlierTest> outliers(const std::vector<CheckedMeasurement>& checked
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

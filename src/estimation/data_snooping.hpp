@@ -22,7 +22,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 struct CheckedMeasurement {
   int measurement = -1;
@@ -60,4 +60,4 @@ struct OutlierTest {
 [[nodiscard]] std::vector<OutlierTest> outliers(const std::vector<CheckedMeasurement>& checked,
                                                 double level = 0.05, double dispersion = 1.0);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -23,17 +23,17 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// One coefficient. Per session a pattern per row (sighting, truth row, fix, loop), or none at all.
 struct EffectPattern {
   std::string name;
-  std::vector<std::vector<DrivePattern>> drives;
-  std::vector<std::vector<ViewPattern>> sightings;
-  std::vector<std::vector<ViewPattern>> truths;
+  std::vector<std::vector<effects::DrivePattern>> drives;
+  std::vector<std::vector<effects::ViewPattern>> sightings;
+  std::vector<std::vector<effects::ViewPattern>> truths;
   double prior_sd = std::numeric_limits<double>::infinity();  ///< of the coefficient, about 0
-  std::vector<std::vector<ViewPattern>> fixes = {};
-  std::vector<std::vector<ViewPattern>> loops = {};
+  std::vector<std::vector<effects::ViewPattern>> fixes = {};
+  std::vector<std::vector<effects::ViewPattern>> loops = {};
   std::optional<double> held = {};  ///< known at this value: acts, but is no unknown
   double reference = 0.0;  ///< of the coefficient, where the patterns leave all as recorded
 };
@@ -49,16 +49,15 @@ using EffectParameters = std::vector<EffectPattern>;
                                          const Eigen::VectorXd& unknown);
 
 /// What all coefficients together do to a session's rows; empty where they leave them as they are.
-[[nodiscard]] std::vector<DrivePattern> summed_patterns_of(const EffectParameters& border,
-                                                           const Eigen::VectorXd& offsets,
-                                                           std::size_t session);
+[[nodiscard]] std::vector<effects::DrivePattern> summed_patterns_of(const EffectParameters& border,
+                                                                    const Eigen::VectorXd& offsets,
+                                                                    std::size_t session);
 /// Of each session.
-[[nodiscard]] std::vector<std::vector<DrivePattern>> summed_patterns(const EffectParameters& border,
-                                                                     const Eigen::VectorXd& offsets,
-                                                                     std::size_t sessions);
+[[nodiscard]] std::vector<std::vector<effects::DrivePattern>> summed_patterns(
+    const EffectParameters& border, const Eigen::VectorXd& offsets, std::size_t sessions);
 
 /// What each coefficient does to one session's rows, as segment_motion takes it; nullptr: nothing.
-[[nodiscard]] std::vector<const std::vector<DrivePattern>*> drive_patterns(
+[[nodiscard]] std::vector<const std::vector<effects::DrivePattern>*> drive_patterns(
     const EffectParameters& border, std::size_t session);
 
 /// A coefficient for all sessions that acts on every row alike: shape 1, of a channel that acts on
@@ -67,4 +66,4 @@ using EffectParameters = std::vector<EffectPattern>;
                                          const std::vector<DrivenRecording>& recordings,
                                          const Robot& robot);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/fitted_rows.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 FittedRows::FittedRows(const RecordingSystem& fit)
     : fit_(fit),
@@ -10,7 +10,7 @@ FittedRows::FittedRows(const RecordingSystem& fit)
       coefficient_covariance_(fit.coefficient_covariance()) {}
 
 Eigen::MatrixXd FittedRows::by_nodes(const RecordingSystem& rows, std::size_t measurement) const {
-  const BlockSystem& normal = fit_.normal_equations();
+  const linalg::BlockSystem& normal = fit_.normal_equations();
   const std::vector<RecordingSystem::NodeRows> links = rows.node_rows(measurement);
   const Eigen::Index count = rows.first_row(measurement + 1) - rows.first_row(measurement);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(count, count);
@@ -37,4 +37,4 @@ Eigen::MatrixXd FittedRows::covariance(const RecordingSystem& rows, std::size_t 
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -17,7 +17,7 @@
 
 #include <cstddef>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 class FittedRows {
  public:
@@ -33,8 +33,8 @@ class FittedRows {
 
  private:
   const RecordingSystem& fit_;
-  FrontalInverse inverse_;
+  linalg::FrontalInverse inverse_;
   Eigen::MatrixXd coefficient_covariance_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

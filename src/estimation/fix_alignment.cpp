@@ -8,7 +8,7 @@
 #include <limits>
 #include <map>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 constexpr double kFarOff = 5.0;       // sds of a fix
@@ -33,8 +33,8 @@ double truncated_cost(const Alignment& over, const std::vector<FixedPlace>& plac
 Alignment align_to_most(const std::vector<FixedPlace>& all, double limit, double apart) {
   constexpr std::size_t kPaired = 30;
   constexpr std::size_t kJudged = 300;
-  const std::vector<FixedPlace> some = thinned(all, kPaired);
-  const std::vector<FixedPlace> judges = thinned(all, kJudged);
+  const std::vector<FixedPlace> some = statistics::thinned(all, kPaired);
+  const std::vector<FixedPlace> judges = statistics::thinned(all, kJudged);
   Alignment best;
   double least = std::numeric_limits<double>::infinity();
   const auto judge = [&](const Alignment& over) {
@@ -145,4 +145,4 @@ LaidSession lay_onto_fixes(const SessionFixes& fixes, LaidSession laid) {
   return moved_by(over, std::move(laid));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

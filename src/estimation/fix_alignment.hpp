@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// A session's fixes, by pose.
 struct SessionFixes {
@@ -27,4 +27,4 @@ struct SessionFixes {
 /// All of a session that lies in a frame of its own.
 [[nodiscard]] LaidSession lay_onto_fixes(const SessionFixes& fixes, LaidSession laid);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 constexpr double kLeastSd = 1e-7;   // rad: who states no noise at all
@@ -24,7 +24,8 @@ GyroExcess gyro_excess(const MotionRows& drive, const std::vector<SegmentRow>& r
   Eigen::VectorXd over_sd = Eigen::VectorXd::Zero(count);
   for (Eigen::Index k = 0; k < count; ++k) {
     const SegmentRow& row = rows[static_cast<std::size_t>(k)];
-    const double variance = excess_variance(drive, row.row, row.part, row.duration, robot, noise);
+    const double variance =
+        odometry::excess_variance(drive, row.row, row.part, row.duration, robot, noise);
     if (!std::isfinite(variance)) continue;
     over_sd[k] = 1.0 / std::sqrt(variance + kLeastSd * kLeastSd);
     excess[k] = row.part * drive.gyro[row.row].excess;
@@ -59,7 +60,7 @@ GyroExcess gyro_excess(const MotionRows& drive, const std::vector<SegmentRow>& r
 
 Eigen::Matrix<double, 4, Eigen::Dynamic> excess_slopes(
     const std::vector<SegmentRow>& rows, const std::vector<Vector4>& weights,
-    const std::vector<const std::vector<DrivePattern>*>& patterns) {
+    const std::vector<const std::vector<effects::DrivePattern>*>& patterns) {
   Eigen::Matrix<double, 4, Eigen::Dynamic> slopes(4, static_cast<Eigen::Index>(patterns.size()));
   slopes.setZero();
   for (std::size_t p = 0; p < patterns.size(); ++p) {
@@ -72,4 +73,4 @@ Eigen::Matrix<double, 4, Eigen::Dynamic> excess_slopes(
   return slopes;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

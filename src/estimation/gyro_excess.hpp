@@ -21,7 +21,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 struct GyroExcess {
   int rows = 0;                     ///< numbers, 0 to 4
@@ -37,6 +37,6 @@ struct GyroExcess {
 /// segment_motion.
 [[nodiscard]] Eigen::Matrix<double, 4, Eigen::Dynamic> excess_slopes(
     const std::vector<SegmentRow>& rows, const std::vector<Vector4>& weights,
-    const std::vector<const std::vector<DrivePattern>*>& patterns);
+    const std::vector<const std::vector<effects::DrivePattern>*>& patterns);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/held_unknowns.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 
-void hold_unknowns(BlockSystem& A, Eigen::VectorXd& gradient,
+void hold_unknowns(linalg::BlockSystem& A, Eigen::VectorXd& gradient,
                    const std::vector<std::uint8_t>& held) {
   Eigen::VectorXd diagonal;
   for (int node = 0; node < static_cast<int>(held.size()); ++node) {
@@ -19,4 +19,4 @@ void hold_unknowns(BlockSystem& A, Eigen::VectorXd& gradient,
   if (diagonal.size() > 0) A.set_diagonal(diagonal);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

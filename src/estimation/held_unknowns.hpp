@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// What of a node is held, bit by bit. A node's unknowns are x, y and, of a pose, its heading.
 enum Held : std::uint8_t { held_nothing = 0, held_position = 1, held_heading = 2, held_all = 3 };
@@ -21,7 +21,7 @@ enum Held : std::uint8_t { held_nothing = 0, held_position = 1, held_heading = 2
 
 /// Gives each held unknown of A step = -gradient the equation 1 * step = 0. Its row and column must
 /// be empty but for the diagonal. `held`: of the nodes, those from its end on are free.
-void hold_unknowns(BlockSystem& A, Eigen::VectorXd& gradient,
+void hold_unknowns(linalg::BlockSystem& A, Eigen::VectorXd& gradient,
                    const std::vector<std::uint8_t>& held);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -4,7 +4,7 @@
 
 #include "estimation/problem_part.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 SessionToLay::SessionToLay(const RecordingProblem& session, const EffectParameters& effects,
                            const StartOptions& start)
@@ -90,4 +90,4 @@ LaidSession moved_by(const Alignment& over, LaidSession laid) {
   return laid;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

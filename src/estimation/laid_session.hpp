@@ -10,7 +10,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// What is to be laid down, with a session's measurements by the poses that they belong to. Keeps
 /// references to problem and border.
@@ -63,4 +63,4 @@ struct KnownPose {
 /// All of it.
 [[nodiscard]] LaidSession moved_by(const Alignment& over, LaidSession laid);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

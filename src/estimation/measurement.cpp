@@ -6,12 +6,12 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 Matrix4 whitener_of(const Matrix4& covariance, int rows) {
   Matrix4 result = Matrix4::Zero();
   const Eigen::MatrixXd block = covariance.topLeftCorner(rows, rows);
-  result.topLeftCorner(rows, rows) = DenseCholesky(block).inverse_factor();
+  result.topLeftCorner(rows, rows) = linalg::DenseCholesky(block).inverse_factor();
   return result;
 }
 
@@ -27,4 +27,4 @@ Eigen::MatrixXd covariance_of(const Measurement& one) {
   return (W.transpose() * W).inverse();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -8,7 +8,7 @@
 
 #include <cstddef>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 class MeasurementKind;
 
@@ -21,9 +21,10 @@ struct Measurement {
   /// Added to the value: by segment_noise.hpp, and by student_tails.hpp to a sighting's.
   Vector4 value_offset = Vector4::Zero();
   Matrix4 whitener = Matrix4::Zero();  ///< rows x rows: inverse of the covariance's Cholesky factor
-  ViewPattern mounted = {};  ///< where its sensor is stated to sit: its view without effects
-  double tails = 0.0;        ///< degrees of freedom of Student's t (student_tails.hpp); 0: normal
-  int session = -1;          ///< -1: survey
+  effects::ViewPattern mounted =
+      {};              ///< where its sensor is stated to sit: its view without effects
+  double tails = 0.0;  ///< degrees of freedom of Student's t (student_tails.hpp); 0: normal
+  int session = -1;    ///< -1: survey
   /// Row of the session's stream; of what is driven, the segment.
   std::size_t source = 0;
   bool own_sd = false;  ///< the stream's row states it; the model's noise counts for nothing
@@ -36,7 +37,7 @@ struct MeasurementRows {
   Vector4 error = Vector4::Zero();
   RowsByNode by_from = RowsByNode::Zero();
   RowsByNode by_to = RowsByNode::Zero();
-  ByView by_view = ByView::Zero();
+  effects::ByView by_view = effects::ByView::Zero();
 };
 
 /// Inverse Cholesky factor of a covariance's leading rows x rows.
@@ -48,4 +49,4 @@ struct MeasurementRows {
 /// Covariance of a measurement's rows, rows x rows.
 [[nodiscard]] Eigen::MatrixXd covariance_of(const Measurement& one);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

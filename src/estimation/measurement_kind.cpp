@@ -7,7 +7,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 Matrix4 MeasurementKind::fixed_covariance(const Measurement& one, const Noise&) const {
   Matrix4 fixed = Matrix4::Zero();
@@ -18,18 +18,19 @@ Matrix4 MeasurementKind::fixed_covariance(const Measurement& one, const Noise&) 
 }
 
 bool MeasurementKind::shows(Channel channel, const Measurement& one) const {
-  if (facts_.stream == RecordingStream::drive) return acts_on(channel) != ActsOn::views;
-  if (acts_on(channel) != ActsOn::views) return false;
-  if (record_of(channel).reading) return !reading_variance(channel, one).isZero(0.0);
+  if (facts_.stream == RecordingStream::drive)
+    return effects::acts_on(channel) != effects::ActsOn::views;
+  if (effects::acts_on(channel) != effects::ActsOn::views) return false;
+  if (effects::record_of(channel).reading) return !reading_variance(channel, one).isZero(0.0);
   switch (facts_.stream) {
     case RecordingStream::sightings:
-      return acts_on_sightings(channel);
+      return effects::acts_on_sightings(channel);
     case RecordingStream::truth:
-      return acts_on_truth(channel);
+      return effects::acts_on_truth(channel);
     case RecordingStream::fixes:
-      return acts_on_fixes(channel);
+      return effects::acts_on_fixes(channel);
     case RecordingStream::loops:
-      return acts_on_loops(channel);
+      return effects::acts_on_loops(channel);
     default:
       return false;
   }
@@ -38,28 +39,28 @@ bool MeasurementKind::shows(Channel channel, const Measurement& one) const {
 Matrix4 MeasurementKind::reading_variance(Channel channel, const Measurement& one) const {
   Matrix4 variance = Matrix4::Zero();
   for (Eigen::Index row = 0; row < one.rows; ++row) {
-    if (noise(row) == record_of(channel).noise_source) variance(row, row) = 1.0;
+    if (noise(row) == effects::record_of(channel).noise_source) variance(row, row) = 1.0;
   }
   return variance;
 }
 
-ViewVector MeasurementKind::unit_view(Channel channel, const Measurement&, double speed,
-                                      double turn_rate) const {
-  return view_pattern(channel, 1.0, speed, turn_rate).vector();
+effects::ViewVector MeasurementKind::unit_view(Channel channel, const Measurement&, double speed,
+                                               double turn_rate) const {
+  return effects::view_pattern(channel, 1.0, speed, turn_rate).vector();
 }
 
 std::optional<Vector2> MeasurementKind::seen_from(const Measurement&, const Pose&,
-                                                  const ViewPattern&) const {
+                                                  const effects::ViewPattern&) const {
   return std::nullopt;
 }
 
 Eigen::Matrix<double, 2, 4> MeasurementKind::seen_by_rows(const Measurement&, const Pose&,
-                                                          const ViewPattern&) const {
+                                                          const effects::ViewPattern&) const {
   return Eigen::Matrix<double, 2, 4>::Identity();
 }
 
 double MeasurementKind::missed(const Measurement& one, const Pose& pose, const Vector2& landmark,
-                               const ViewPattern& view) const {
+                               const effects::ViewPattern& view) const {
   const std::optional<Vector2> seen = seen_from(one, pose, view);
   return seen ? (landmark - *seen).norm() : kAbsent;
 }
@@ -73,6 +74,7 @@ std::vector<NamedResidual> MeasurementKind::residuals(int) const {
   return {};
 }
 
-void MeasurementKind::draw(const Vector4&, const Noise&, NormalDraws&, Sighting&) const {}
+void MeasurementKind::draw(const Vector4&, const Noise&, statistics::NormalDraws&,
+                           Sighting&) const {}
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

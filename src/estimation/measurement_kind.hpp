@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// Where the row stands that measured it.
 enum class RecordingStream { drive, sightings, survey, truth, fixes, loops };
@@ -80,7 +80,7 @@ class MeasurementKind {
   /// they add to all else. m, rad.
   [[nodiscard]] virtual MeasurementRows rows(const Measurement& one, const Ends& at,
                                              const Vector4& value,
-                                             const ViewPattern& view) const = 0;
+                                             const effects::ViewPattern& view) const = 0;
 
   /// The model's key of the noise that a row has.
   [[nodiscard]] std::string_view noise(Eigen::Index row) const {
@@ -96,20 +96,20 @@ class MeasurementKind {
   /// bearing).
   [[nodiscard]] virtual Matrix4 reading_variance(Channel channel, const Measurement& one) const;
   /// What a unit of g adds to its view, at this speed (m/s) and turn rate (rad/s).
-  [[nodiscard]] virtual ViewVector unit_view(Channel channel, const Measurement& one, double speed,
-                                             double turn_rate) const;
+  [[nodiscard]] virtual effects::ViewVector unit_view(Channel channel, const Measurement& one,
+                                                      double speed, double turn_rate) const;
 
   /// Where it has what it measures, m, map frame: the landmark, or the point that truth and fixes
   /// track. Nothing where it does not say: a range or a bearing alone.
   [[nodiscard]] virtual std::optional<Vector2> seen_from(const Measurement& one, const Pose& pose,
-                                                         const ViewPattern& view) const;
+                                                         const effects::ViewPattern& view) const;
   /// By its rows' errors, m.
-  [[nodiscard]] virtual Eigen::Matrix<double, 2, 4> seen_by_rows(const Measurement& one,
-                                                                 const Pose& pose,
-                                                                 const ViewPattern& view) const;
+  [[nodiscard]] virtual Eigen::Matrix<double, 2, 4> seen_by_rows(
+      const Measurement& one, const Pose& pose, const effects::ViewPattern& view) const;
   /// m by which a sighting from there misses a landmark; NaN where it does not say.
   [[nodiscard]] virtual double missed(const Measurement& one, const Pose& pose,
-                                      const Vector2& landmark, const ViewPattern& view) const;
+                                      const Vector2& landmark,
+                                      const effects::ViewPattern& view) const;
   /// Covariance that its rows get while poses are reckoned for a start: landmarks lie within
   /// `map_sd`, m. rows x rows.
   [[nodiscard]] virtual Eigen::MatrixXd slack(const Measurement& one, const MeasurementRows& rows,
@@ -119,7 +119,7 @@ class MeasurementKind {
   [[nodiscard]] virtual std::vector<NamedResidual> residuals(int rows) const;
 
   /// A sighting's row drawn anew; `exact` are its values without noise.
-  virtual void draw(const Vector4& exact, const Noise& noise, NormalDraws& draws,
+  virtual void draw(const Vector4& exact, const Noise& noise, statistics::NormalDraws& draws,
                     Sighting& sighting) const;
 
  protected:
@@ -224,4 +224,4 @@ class MeasurementKind {
   return is_sighting(one) && one.rows >= 2;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/measurement_rows.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 /// Per session a pattern per row; nullptr of a stream that is no view.
-const std::vector<std::vector<ViewPattern>>* views_of(const EffectPattern& effect,
-                                                      RecordingStream stream) {
+const std::vector<std::vector<effects::ViewPattern>>* views_of(const EffectPattern& effect,
+                                                               RecordingStream stream) {
   switch (stream) {
     case RecordingStream::sightings:
       return &effect.sightings;
@@ -24,8 +24,8 @@ const std::vector<std::vector<ViewPattern>>* views_of(const EffectPattern& effec
   return nullptr;
 }
 
-const ViewPattern* unit_view_of(const EffectPattern& effect, RecordingStream stream,
-                                std::size_t session, std::size_t row) {
+const effects::ViewPattern* unit_view_of(const EffectPattern& effect, RecordingStream stream,
+                                         std::size_t session, std::size_t row) {
   const auto* views = views_of(effect, stream);
   if (views == nullptr || views->empty() || (*views)[session].empty()) return nullptr;
   return &(*views)[session][row];
@@ -33,24 +33,24 @@ const ViewPattern* unit_view_of(const EffectPattern& effect, RecordingStream str
 
 }  // namespace
 
-const ViewPattern* unit_view_of(const EffectPattern& effect, const Measurement& one) {
+const effects::ViewPattern* unit_view_of(const EffectPattern& effect, const Measurement& one) {
   if (one.session < 0) return nullptr;
   return unit_view_of(effect, one.kind->facts().stream, idx(one.session), one.source);
 }
 
-ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
-                    RecordingStream stream, std::size_t session, std::size_t row,
-                    const ViewPattern& mounted) {
-  ViewPattern sum = mounted;
+effects::ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
+                             RecordingStream stream, std::size_t session, std::size_t row,
+                             const effects::ViewPattern& mounted) {
+  effects::ViewPattern sum = mounted;
   for (std::size_t k = 0; k < border.size(); ++k) {
-    const ViewPattern* pattern = unit_view_of(border[k], stream, session, row);
+    const effects::ViewPattern* pattern = unit_view_of(border[k], stream, session, row);
     if (pattern != nullptr) sum.add(offsets[static_cast<Eigen::Index>(k)], *pattern);
   }
   return sum;
 }
 
-ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
-                    const Measurement& one) {
+effects::ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
+                             const Measurement& one) {
   if (one.session < 0) return {};
   return view_of(border, offsets, one.kind->facts().stream, idx(one.session), one.source,
                  one.mounted);
@@ -82,8 +82,8 @@ Ends ends_of(const RecordingProblem& problem, const Measurement& measurement,
 
 MeasurementRows measurement_rows(const RecordingProblem& problem, const Measurement& measurement,
                                  const RecordingState& state, const Vector4& value,
-                                 const ViewPattern& view) {
+                                 const effects::ViewPattern& view) {
   return measurement.kind->rows(measurement, ends_of(problem, measurement, state), value, view);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

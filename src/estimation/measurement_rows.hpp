@@ -8,21 +8,23 @@
 #include "estimation/effect_parameters.hpp"
 #include "estimation/recording_problem.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// An effect's pattern for one sighting, truth row, fix or loop; nullptr where it has none.
-[[nodiscard]] const ViewPattern* unit_view_of(const EffectPattern& effect,
-                                              const Measurement& measurement);
+[[nodiscard]] const effects::ViewPattern* unit_view_of(const EffectPattern& effect,
+                                                       const Measurement& measurement);
 
 /// Where its sensor is stated to sit, and the sum of the effects' patterns for one sighting, truth
 /// row, fix or loop; `offsets` are all coefficients of the border less their references.
-[[nodiscard]] ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
-                                  const Measurement& measurement);
+[[nodiscard]] effects::ViewPattern view_of(const EffectParameters& border,
+                                           const Eigen::VectorXd& offsets,
+                                           const Measurement& measurement);
 
 /// The same for a row of a session's stream, whose sensor is `mounted` there (mounted_views.hpp).
-[[nodiscard]] ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
-                                  RecordingStream stream, std::size_t session, std::size_t row,
-                                  const ViewPattern& mounted);
+[[nodiscard]] effects::ViewPattern view_of(const EffectParameters& border,
+                                           const Eigen::VectorXd& offsets, RecordingStream stream,
+                                           std::size_t session, std::size_t row,
+                                           const effects::ViewPattern& mounted);
 
 /// Values of what a measurement lies between.
 [[nodiscard]] Ends ends_of(const RecordingProblem& problem, const Measurement& measurement,
@@ -32,6 +34,6 @@ namespace trussmap {
 [[nodiscard]] MeasurementRows measurement_rows(const RecordingProblem& problem,
                                                const Measurement& measurement,
                                                const RecordingState& state, const Vector4& value,
-                                               const ViewPattern& view);
+                                               const effects::ViewPattern& view);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

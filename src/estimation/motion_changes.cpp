@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 /// Rows of one kind in a row.
@@ -26,7 +26,7 @@ std::vector<Run> runs_of(const MotionRows& drive, const std::vector<SegmentRow>&
   std::vector<Run> runs;
   double begin = 0.0;
   for (const SegmentRow& row : rows) {
-    const double about_centre = std::abs(wheel_travel({0.0, 0.0, row.turn}, robot).right);
+    const double about_centre = std::abs(drive::wheel_travel({0.0, 0.0, row.turn}, robot).right);
     if (row.path != 0.0 || row.turn != 0.0) {
       const bool spin = about_centre > std::abs(row.path);
       if (runs.empty() || runs.back().spin != spin) runs.push_back({spin, 0.0, 0.0, begin});
@@ -54,4 +54,4 @@ std::vector<double> motion_changes(const MotionRows& drive, const std::vector<Se
   return times;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

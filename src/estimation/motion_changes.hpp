@@ -12,7 +12,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// What counts as a motion of its own.
 struct LeastMotion {
@@ -25,4 +25,4 @@ struct LeastMotion {
                                                  const std::vector<SegmentRow>& rows,
                                                  const Robot& robot, const LeastMotion& least);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

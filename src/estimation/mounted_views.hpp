@@ -11,10 +11,11 @@
 
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// Nothing of the drive and of the survey.
-[[nodiscard]] inline ViewPattern mounted_view(const Mountings& mounted, RecordingStream stream) {
+[[nodiscard]] inline effects::ViewPattern mounted_view(const Mountings& mounted,
+                                                       RecordingStream stream) {
   const std::optional<Mounting> none;
   const std::optional<Mounting>& at = stream == RecordingStream::sightings ? mounted.sensor
                                       : stream == RecordingStream::truth   ? mounted.tracked
@@ -25,4 +26,4 @@ namespace trussmap {
   return {.ahead = at->x, .left = at->y, .heading = at->yaw};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

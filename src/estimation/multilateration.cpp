@@ -11,7 +11,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// Found by robust_place through the reading's namespace.
 static ReadingPull pull_of(const RangeReading& one, const Vector2& place) {
@@ -27,7 +27,7 @@ std::optional<Multilateration> multilaterate(const std::vector<RangeReading>& al
   constexpr double kApart = 0.05;     // of the range: places closer than that are one
   constexpr double kWellKnown = 0.1;  // of the range: standard deviation along the worst direction
   if (all.size() < kFewest) return std::nullopt;
-  const std::vector<RangeReading> readings = thinned(all, kMostReadings);
+  const std::vector<RangeReading> readings = statistics::thinned(all, kMostReadings);
   const RangeReading& nearest = *std::min_element(
       readings.begin(), readings.end(),
       [](const RangeReading& a, const RangeReading& b) { return a.range < b.range; });
@@ -62,4 +62,4 @@ std::optional<Multilateration> multilaterate(const std::vector<RangeReading>& al
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

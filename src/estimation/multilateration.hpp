@@ -15,7 +15,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 struct RangeReading {
   Vector2 from = Vector2::Zero();  ///< m
@@ -35,4 +35,4 @@ struct Multilateration {
 [[nodiscard]] std::optional<Multilateration> multilaterate(
     const std::vector<RangeReading>& readings);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

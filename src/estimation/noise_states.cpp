@@ -13,7 +13,7 @@
 #include <map>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 constexpr double kLeastRest = 0.5;       // s: a shorter rest ends no leg
@@ -36,9 +36,9 @@ struct ProcessToLay {
 };
 
 /// What a unit of g adds to the pattern of a view.
-ViewVector unit_view(const ProcessToLay& lasting, const Measurement& one) {
+effects::ViewVector unit_view(const ProcessToLay& lasting, const Measurement& one) {
   const MotionRows& drive = lasting.drive_of(one);
-  const std::size_t row = row_at(drive, lasting.problem.time_of(one.from));
+  const std::size_t row = drive::row_at(drive, lasting.problem.time_of(one.from));
   const double duration = std::max(drive.duration(row), 1e-9);
   const BodyMotion motion = drive.motion(row);
   return one.kind->unit_view(lasting.channel, one, motion.forward / duration,
@@ -81,7 +81,7 @@ LaidProcess lay_white(const ProcessToLay& lasting) {
     if (!one.kind->shows(lasting.channel, one)) continue;
     if (is_driven(one)) {
       for (const Vector4& row : unit_rows(lasting, one)) laid.within[k] += row * row.transpose();
-    } else if (record_of(lasting.channel).reading) {  // its variance is the reading's own
+    } else if (effects::record_of(lasting.channel).reading) {  // its variance is the reading's own
       laid.within[k] = one.kind->reading_variance(lasting.channel, one);
     } else {
       laid.terms[k].push_back({static_cast<int>(laid.states.size()), unit_view(lasting, one)});
@@ -103,7 +103,8 @@ Chain chain_of(const ProcessToLay& lasting) {
   for (const Measurement& one : problem.measurements) {
     if (one.kind->shows(lasting.channel, one)) wanted[lasting.pose_of(one.from)] = true;
   }
-  if (acts_on(lasting.channel) != ActsOn::views) wanted.assign(wanted.size(), true);
+  if (effects::acts_on(lasting.channel) != effects::ActsOn::views)
+    wanted.assign(wanted.size(), true);
   Chain chain{{}, std::vector<int>(problem.poses.size(), -1)};
   int session = -1;
   double elapsed = 0.0;  // from the session's start to the last instant
@@ -115,8 +116,8 @@ Chain chain_of(const ProcessToLay& lasting) {
     const bool first = node.session != session;
     double at = node.t - drive.start();
     if (goes_with_distance(lasting.process)) {
-      if (first) driven = driven_path(drive);
-      at = path_at(drive, driven, node.t);
+      if (first) driven = drive::driven_path(drive);
+      at = drive::path_at(drive, driven, node.t);
     }
     const int last = static_cast<int>(chain.states.size()) - 1;
     chain.at_pose[k] = last + 1;
@@ -135,7 +136,7 @@ Chain chain_of(const ProcessToLay& lasting) {
 
 LaidProcess lay_chain(const ProcessToLay& lasting) {
   auto [states, at_pose] = chain_of(lasting);
-  const bool at_ends = acts_on(lasting.channel) == ActsOn::readings;
+  const bool at_ends = effects::acts_on(lasting.channel) == effects::ActsOn::readings;
   LaidProcess laid = nothing_of(lasting.problem);
   laid.states = std::move(states);
   for (std::size_t k = 0; k < laid.terms.size(); ++k) {
@@ -251,12 +252,13 @@ std::map<int, Vector4> sums_by_leg(const std::vector<SegmentRow>& rows,
 std::vector<Vector4> unit_columns(const MotionRows& drive, const std::vector<SegmentRow>& rows,
                                   const std::vector<Matrix4>& influences, Channel channel,
                                   const Robot& robot) {
-  const bool reads = acts_on(channel) == ActsOn::readings;
+  const bool reads = effects::acts_on(channel) == effects::ActsOn::readings;
   std::vector<Vector4> c(rows.size(), Vector4::Zero());
   for (std::size_t row = 0; row < rows.size(); ++row) {
     if (reads && std::isnan(rows[row].reading)) continue;
     const std::size_t at = rows[row].row;
-    const DrivePattern unit = drive_pattern(channel, 1.0, row_motion(drive, at, robot));
+    const effects::DrivePattern unit =
+        effects::drive_pattern(channel, 1.0, drive::row_motion(drive, at, robot));
     c[row] = influences[row] * Vector4(unit.advance, unit.slip, unit.turn, unit.compass);
   }
   return c;
@@ -268,7 +270,8 @@ std::vector<Vector4> unit_excesses(const MotionRows& drive, const std::vector<Se
   std::vector<Vector4> c(rows.size(), Vector4::Zero());
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const std::size_t at = rows[row].row;
-    const DrivePattern unit = drive_pattern(channel, 1.0, row_motion(drive, at, robot));
+    const effects::DrivePattern unit =
+        effects::drive_pattern(channel, 1.0, drive::row_motion(drive, at, robot));
     c[row] = rows[row].part * unit.excess * weights[row];
   }
   return c;
@@ -289,4 +292,4 @@ LaidProcess ProcessLayer::lay(Channel channel, ProcessKind process, double lengt
   return is_chain(process) ? lay_chain(lasting) : lay_constants(lasting);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -33,7 +33,7 @@
 #include <map>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 inline constexpr double kLongestGap = 5.0;  ///< s: a landmark unseen for longer is met anew
 
@@ -94,15 +94,17 @@ void put_processes(RecordingProblem& problem, const std::vector<LaidProcess>& la
                    const std::vector<double>& sds);
 
 /// What one unit of a term's state adds to a measurement's error (predicted - measured).
-[[nodiscard]] Vector4 error_by(const Measurement& measurement, const ByView& by_view,
+[[nodiscard]] Vector4 error_by(const Measurement& measurement, const effects::ByView& by_view,
                                const NoiseTerm& term);
 
 /// What the states add to a segment's four numbers.
 [[nodiscard]] Vector4 lasting_in_segment(const RecordingProblem& problem, std::size_t measurement,
                                          const Eigen::VectorXd& states);
 /// A view with what the states add to it. Its derivatives are to be taken there.
-[[nodiscard]] ViewPattern lasting_in_view(const RecordingProblem& problem, std::size_t measurement,
-                                          const ViewPattern& view, const Eigen::VectorXd& states);
+[[nodiscard]] effects::ViewPattern lasting_in_view(const RecordingProblem& problem,
+                                                   std::size_t measurement,
+                                                   const effects::ViewPattern& view,
+                                                   const Eigen::VectorXd& states);
 
 /// Of each state, where nothing is known of it.
 [[nodiscard]] std::vector<double> state_variances(const RecordingProblem& problem);
@@ -112,4 +114,4 @@ void put_processes(RecordingProblem& problem, const std::vector<LaidProcess>& la
                                                const std::vector<double>& variances,
                                                std::size_t measurement);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

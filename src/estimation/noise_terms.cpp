@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 void put_processes(RecordingProblem& problem, const std::vector<LaidProcess>& laid,
                    const std::vector<double>& sds) {
@@ -53,7 +53,8 @@ void add_processes(RecordingProblem& problem, const std::vector<DrivenRecording>
   }
 }
 
-Vector4 error_by(const Measurement& measurement, const ByView& by_view, const NoiseTerm& term) {
+Vector4 error_by(const Measurement& measurement, const effects::ByView& by_view,
+                 const NoiseTerm& term) {
   if (is_driven(measurement)) return -term.by.head<4>();
   return by_view * term.by;
 }
@@ -68,9 +69,10 @@ Vector4 lasting_in_segment(const RecordingProblem& problem, std::size_t measurem
   return sum;
 }
 
-ViewPattern lasting_in_view(const RecordingProblem& problem, std::size_t measurement,
-                            const ViewPattern& view, const Eigen::VectorXd& states) {
-  ViewPattern sum = view;
+effects::ViewPattern lasting_in_view(const RecordingProblem& problem, std::size_t measurement,
+                                     const effects::ViewPattern& view,
+                                     const Eigen::VectorXd& states) {
+  effects::ViewPattern sum = view;
   if (problem.noise_terms.empty() || states.size() == 0) return sum;
   for (const NoiseTerm& term : problem.noise_terms[measurement]) {
     const double z = states[term.state];
@@ -116,4 +118,4 @@ Matrix4 segment_prior_covariance(const RecordingProblem& problem,
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

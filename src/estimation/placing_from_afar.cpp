@@ -8,7 +8,7 @@
 #include <cmath>
 #include <map>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 /// Of landmarks that have no place yet.
@@ -67,4 +67,4 @@ LaidSession place_from_afar(const SessionToLay& session, LaidSession laid, int c
   return laid;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

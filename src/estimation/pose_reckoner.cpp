@@ -8,7 +8,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 KnownCoefficients prior_of(const EffectParameters& border) {
   const std::vector<int> unknown = unknown_coefficients(border);
@@ -142,4 +142,4 @@ void PoseReckoner::doubt() {
   covariance_.topLeftCorner<3, 3>().diagonal().array() += kDoubt * kDoubt;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

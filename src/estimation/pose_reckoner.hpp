@@ -19,7 +19,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// Places so far, m; none for a landmark not yet sighted.
 using PlacedLandmarks = std::vector<std::optional<Vector2>>;
@@ -86,4 +86,4 @@ class PoseReckoner {
   Eigen::MatrixXd covariance_ = Eigen::MatrixXd::Zero(3, 3);
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 /// Numbers in a part, by those in the whole problem; -1: not in it.
@@ -118,4 +118,4 @@ bool has_loops(const RecordingProblem& problem) {
   return std::any_of(problem.measurements.begin(), problem.measurements.end(), is_tie);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

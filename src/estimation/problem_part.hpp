@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// Poses first ... first + count - 1.
 struct PoseSpan {
@@ -39,4 +39,4 @@ struct ProblemPart {
 [[nodiscard]] bool has_compass(const RecordingProblem& problem);
 [[nodiscard]] bool has_loops(const RecordingProblem& problem);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 Lag correlated(double x) {
@@ -72,4 +72,4 @@ ProcessMoments process_moments(const std::vector<SegmentRow>& rows, const std::v
   return at;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

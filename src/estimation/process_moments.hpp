@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// Correlated in it, or walking: else, where a process is either, in time.
 [[nodiscard]] bool goes_with_distance(ProcessKind process);
@@ -43,4 +43,4 @@ struct ProcessMoments {
                                              const std::vector<Vector4>& c, ProcessKind process,
                                              double length, bool at_ends);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -14,7 +14,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 Matrix2 information(const Matrix2& covariance) {
@@ -75,16 +75,17 @@ PureErrorSplit split_pure_error(const LandmarkGraph& map, const std::vector<Repe
     result.pure_error += one.scatter;
     result.pure_error_dof += 2 * (one.count - 1);
   }
-  LinearAdjustment fit = adjust_linear(merged);
+  map::LinearAdjustment fit = map::adjust_linear(merged);
   result.lack_of_fit = fit.chi2;
   result.lack_of_fit_dof = fit.dof;
   result.map = std::move(fit.map);
   if (result.pure_error_dof > 0 && result.lack_of_fit_dof > 0 && result.pure_error > 0.0) {
     result.F =
         (result.lack_of_fit / result.lack_of_fit_dof) / (result.pure_error / result.pure_error_dof);
-    result.p_value = fisher_p_value(result.F, result.lack_of_fit_dof, result.pure_error_dof);
+    result.p_value =
+        statistics::fisher_p_value(result.F, result.lack_of_fit_dof, result.pure_error_dof);
   }
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -23,7 +23,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// One traversal of the route between two landmarks (numbers in the map), either way.
 struct Repeat {
@@ -60,4 +60,4 @@ struct PureErrorSplit {
 [[nodiscard]] PureErrorSplit split_pure_error(const LandmarkGraph& map,
                                               const std::vector<Repeat>& repeats);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

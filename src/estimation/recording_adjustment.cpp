@@ -14,7 +14,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 std::string name_of(const RecordingProblem& problem, int node) {
@@ -25,7 +25,7 @@ std::string name_of(const RecordingProblem& problem, int node) {
   const PoseNode& pose = problem.poses[idx(node - problem.landmark_count())];
   const std::string session =
       problem.sessions.size() > 1 ? " of " + problem.sessions[idx(pose.session)] : std::string();
-  return "the robot at t = " + fixed_text(pose.t, 3) + " s" + session;
+  return "the robot at t = " + text::fixed_text(pose.t, 3) + " s" + session;
 }
 
 /// Landmarks first: they are what the user knows by name.
@@ -37,7 +37,8 @@ std::string name_of(const RecordingProblem& problem, int node) {
   for (std::size_t k = 0; k < std::min(nodes.size(), kNodesNamed); ++k) {
     names += (k == 0 ? "" : k + 1 == nodes.size() ? " and " : ", ") + name_of(problem, nodes[k]);
   }
-  if (nodes.size() > kNodesNamed) names += joined(" and ", nodes.size() - kNodesNamed, " more");
+  if (nodes.size() > kNodesNamed)
+    names += text::joined(" and ", nodes.size() - kNodesNamed, " more");
   throw SolveError(names +
                    " can still move without changing any measurement; sight more landmarks from "
                    "there, or survey one");
@@ -63,7 +64,7 @@ void check_determined(RecordingSystem& system, const RecordingProblem& problem,
   if (!loose.empty()) refuse_loose(problem, loose);
   try {
     system.factorise();
-  } catch (const NotPositiveDefinite& error) {
+  } catch (const linalg::NotPositiveDefinite& error) {
     if (error.column() >= 0) throw SolveError("the map is too loosely tied together to be solved");
     const std::vector<int> known = find_undetermined(system);
     std::vector<int> all(unknown_coefficients(border).size());
@@ -160,7 +161,8 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
   const auto coefficients = static_cast<Eigen::Index>(unknown_coefficients(border).size());
   RecordingAdjustment result;
   RecordingDescent fit{start, initial(options, coefficients), 0.0, 0, false};
-  const DescentOptions descent{options.max_iterations, options.tolerance, kNegligibleDecrease};
+  const linalg::DescentOptions descent{options.max_iterations, options.tolerance,
+                                       kNegligibleDecrease};
   int rows = system.rows();
   try {
     if (options.gate) {
@@ -175,7 +177,7 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
       fit.coefficients = std::move(robust.coefficients);
     }
     fit = descend(system, std::move(fit.state), std::move(fit.coefficients), descent);
-  } catch (const NotPositiveDefinite&) {
+  } catch (const linalg::NotPositiveDefinite&) {
     throw SolveError("the adjustment broke down: the model's noise spans too many magnitudes");
   }
   if (!std::isfinite(fit.chi2)) {
@@ -191,7 +193,7 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
   for (const EffectPattern& effect : border) {
     result.dof += !effect.held && std::isfinite(effect.prior_sd) ? 1 : 0;
   }
-  result.p_value = chi2_p_value(result.chi2, result.dof);
+  result.p_value = statistics::chi2_p_value(result.chi2, result.dof);
   result.iterations = fit.iterations;
   result.converged = fit.converged;
   result.gradient_norm = system.gradient_norm();
@@ -245,10 +247,11 @@ std::vector<std::string> mirror_warnings(const RecordingProblem& problem,
     const bool first = (found->place - adjustment.state.landmarks[k]).norm() <
                        (*found->mirror - adjustment.state.landmarks[k]).norm();
     const Vector2 other = first ? *found->mirror : found->place;
-    warnings.push_back(joined("landmark ", problem.landmarks[k],
-                              " has ranges from about one line alone: it may as well lie at (",
-                              fixed_text(other.x(), 2), ", ", fixed_text(other.y(), 2),
-                              ") m; drive to another side of it"));
+    warnings.push_back(
+        text::joined("landmark ", problem.landmarks[k],
+                     " has ranges from about one line alone: it may as well lie at (",
+                     text::fixed_text(other.x(), 2), ", ", text::fixed_text(other.y(), 2),
+                     ") m; drive to another side of it"));
   }
   return warnings;
 }
@@ -276,4 +279,4 @@ Eigen::MatrixXd joint_covariance(const RecordingProblem& problem, const EffectPa
   return system.joint_covariance(nodes);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -23,7 +23,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 struct RecordingAdjustment;
 
@@ -114,4 +114,4 @@ void add_landmark_uncertainties(const RecordingProblem& problem, const EffectPar
                                                const RecordingAdjustment& adjustment,
                                                const std::vector<int>& nodes);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 void RecordingSystem::add_block(int node, const Eigen::MatrixXd& block) {
   if (block.rows() == 1) normal_.add_diagonal<1>(node, block);
@@ -55,4 +55,4 @@ void RecordingSystem::add_curvature(std::size_t measurement, const Eigen::Matrix
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

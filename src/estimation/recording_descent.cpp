@@ -11,7 +11,7 @@
 #include <cmath>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 /// A recording problem as levenberg_marquardt wants it.
@@ -35,30 +35,31 @@ struct Problem {
     return {system.moved(state.nodes, step), state.coefficients};
   }
   static bool rounding(const State& state, const Step& step) {
-    const double size =
-        std::max(largest_coordinate(state.nodes.landmarks), largest_coordinate(state.nodes.poses));
-    return is_rounding(step.nodes, size) && (step.coefficients.cwiseAbs().array() <=
-                                             kRounding * state.coefficients.cwiseAbs().array())
-                                                .all();
+    const double size = std::max(geometry::largest_coordinate(state.nodes.landmarks),
+                                 geometry::largest_coordinate(state.nodes.poses));
+    return linalg::is_rounding(step.nodes, size) &&
+           (step.coefficients.cwiseAbs().array() <=
+            linalg::kRounding * state.coefficients.cwiseAbs().array())
+               .all();
   }
 };
 
 }  // namespace
 
 RecordingDescent descend(RecordingSystem& system, RecordingState state,
-                         Eigen::VectorXd coefficients, const DescentOptions& options) {
+                         Eigen::VectorXd coefficients, const linalg::DescentOptions& options) {
   Problem problem{system};
   auto [end, chi2, iterations, converged] =
-      levenberg_marquardt(problem, {std::move(state), std::move(coefficients)}, options);
+      linalg::levenberg_marquardt(problem, {std::move(state), std::move(coefficients)}, options);
   return {std::move(end.nodes), std::move(end.coefficients), chi2, iterations, converged};
 }
 
 std::vector<int> find_loose_nodes(RecordingSystem& system) {
-  constexpr LooseLimits kLimits{.strain = 1e-17, .stiffness = 1e-12};
+  constexpr linalg::LooseLimits kLimits{.strain = 1e-17, .stiffness = 1e-12};
   const auto strain = [&system](const Eigen::VectorXd& mode) {
     return system.times(mode).squaredNorm();
   };
-  return find_loose_nodes(system.normal_equations(), strain, kLimits);
+  return linalg::find_loose_nodes(system.normal_equations(), strain, kLimits);
 }
 
 std::vector<int> find_undetermined(const RecordingSystem& system) {
@@ -66,7 +67,7 @@ std::vector<int> find_undetermined(const RecordingSystem& system) {
   constexpr double kShare = 0.1;  // of the eigenvector, to be worth naming
   const Eigen::MatrixXd schur = system.scaled_schur();
   if (schur.cols() == 0) return {};
-  const SymmetricModes modes = symmetric_modes(schur);
+  const linalg::SymmetricModes modes = linalg::symmetric_modes(schur);
   std::vector<int> result;
   for (Eigen::Index c = 0; c < schur.cols(); ++c) {
     double share = 0.0;
@@ -80,4 +81,4 @@ std::vector<int> find_undetermined(const RecordingSystem& system) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

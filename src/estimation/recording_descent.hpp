@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// A decrease of chi^2 that is nothing, however small chi^2 is.
 inline constexpr double kNegligibleDecrease = 1e-10;
@@ -26,8 +26,8 @@ struct RecordingDescent {
 /// Levenberg-Marquardt. The system is left linearised at the result.
 [[nodiscard]] RecordingDescent descend(RecordingSystem& system, RecordingState state,
                                        Eigen::VectorXd coefficients,
-                                       const DescentOptions& options = {100, 1e-12,
-                                                                        kNegligibleDecrease});
+                                       const linalg::DescentOptions& options = {
+                                           100, 1e-12, kNegligibleDecrease});
 
 /// Nodes that can move without changing any measurement, most mobile first; none if all is
 /// determined. The system must be linearised.
@@ -37,4 +37,4 @@ struct RecordingDescent {
 /// also where that failed by the coefficients.
 [[nodiscard]] std::vector<int> find_undetermined(const RecordingSystem& system);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <set>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 void refuse_loose_sessions(const RecordingProblem& problem) {
@@ -25,7 +25,7 @@ void refuse_loose_sessions(const RecordingProblem& problem) {
 
 std::vector<int> untied_poses(const RecordingProblem& problem, const std::vector<double>& weights) {
   const int map_frame = problem.nodes();  // a node of its own: what is measured in the map
-  std::vector<NodePair> ties;
+  std::vector<linalg::NodePair> ties;
   bool absolute = false;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
@@ -37,7 +37,7 @@ std::vector<int> untied_poses(const RecordingProblem& problem, const std::vector
   }
   std::vector<int> untied;
   if (problem.poses.empty()) return untied;
-  const std::vector<int> parts = connected_parts(map_frame + 1, ties);
+  const std::vector<int> parts = linalg::connected_parts(map_frame + 1, ties);
   const int home = parts[idx(absolute ? map_frame : problem.pose_node(0))];
   for (int pose = 0; pose < static_cast<int>(problem.poses.size()); ++pose) {
     if (parts[idx(problem.pose_node(pose))] != home) untied.push_back(pose);
@@ -61,4 +61,4 @@ RecordingGauge choose_gauge(const RecordingProblem& problem) {
   return {!position && landmarks, !direction && any_pose, !position && !landmarks && any_pose};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

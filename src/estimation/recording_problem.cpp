@@ -19,7 +19,7 @@
 #include <tuple>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 /// A problem while session after session joins it: poses and orientations count from 0, until every
@@ -48,12 +48,12 @@ SessionSegments segments_of(const SessionPoses& poses, const MotionRows& drive,
   using Node = std::pair<const double, int>;
   std::vector<std::pair<const Node*, const Node*>> ends;
   for (auto to = poses.at.begin(), from = to; to != poses.at.end(); from = to++) {
-    if (from == to || overlaps_any({from->first, to->first}, poses.left_out)) continue;
+    if (from == to || recording::overlaps_any({from->first, to->first}, poses.left_out)) continue;
     ends.emplace_back(&*from, &*to);
   }
   SessionSegments segments{std::vector<Measurement>(ends.size()),
                            std::vector<std::vector<SegmentRow>>(ends.size())};
-  parallel_for(ends.size(), [&](std::size_t k) {
+  parallel::parallel_for(ends.size(), [&](std::size_t k) {
     const auto& [from, to] = ends[k];
     std::vector<SegmentRow>& rows = segments.rows[k];
     rows = segment_rows(drive, from->first, to->first);
@@ -98,7 +98,7 @@ int numbered(std::map<Key, int>& numbers, const Key& key, std::vector<Named>& al
 GrowingProblem with_sightings(GrowingProblem growing, const std::vector<Sighting>& sightings,
                               const SessionPoses& poses, const Noise& noise) {
   RecordingProblem& problem = growing.problem;
-  const std::vector<bool> repeated = repeated_rows(sightings);  // one measurement each
+  const std::vector<bool> repeated = recording::repeated_rows(sightings);  // one measurement each
   for (std::size_t k = 0; k < sightings.size(); ++k) {
     const auto pose = poses.at.find(sightings[k].t);
     if (pose == poses.at.end() || repeated[k]) continue;
@@ -135,7 +135,7 @@ RecordingProblem with_places(RecordingProblem problem, const DrivenRecording& re
   for (const std::size_t k : used.fixes) {
     add(kinds::measured_by(recording.fixes[k], noise), recording.fixes[k].t, k);
   }
-  const std::vector<bool> repeated = repeated_rows(recording.loops);
+  const std::vector<bool> repeated = recording::repeated_rows(recording.loops);
   for (std::size_t k = 0; used.loops && k < recording.loops.size(); ++k) {
     const Loop& loop = recording.loops[k];
     const auto to = poses.at.find(loop.t2);
@@ -249,7 +249,7 @@ std::string describe(const RecordingProblem& problem, const Measurement& measure
     if (type == NodeType::orientation) words += " landmark " + problem.landmark_of(node);
   };
   const auto at = [&](const char* when, int node) {
-    words += when + fixed_text(problem.time_of(node), 3) + " s";
+    words += when + text::fixed_text(problem.time_of(node), 3) + " s";
   };
   of(facts.from, measurement.from);
   of(facts.to, measurement.to);
@@ -264,4 +264,4 @@ std::string describe(const RecordingProblem& problem, const Measurement& measure
   return words;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -25,7 +25,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// A scalar unknown of a noise process (noise_states.hpp): z = keep z_previous + N(0, sd^2).
 struct NoiseState {
@@ -38,7 +38,7 @@ struct NoiseState {
 /// What one unit of a state adds: to a segment's four numbers, or to the ViewPattern of a view.
 struct NoiseTerm {
   int state = 0;
-  ViewVector by = ViewVector::Zero();
+  effects::ViewVector by = effects::ViewVector::Zero();
 };
 
 /// A robot's pose that is unknown.
@@ -112,4 +112,4 @@ struct RecordingState {
 /// Sighting, "landmark 12 at t = 3.5 s", and so on: a measurement in the user's words.
 [[nodiscard]] std::string describe(const RecordingProblem& problem, const Measurement& measurement);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

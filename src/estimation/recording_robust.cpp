@@ -14,7 +14,7 @@
 #include <set>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 /// A landmark without any sighting would be tied to nothing, unless it is surveyed: then one that
@@ -143,7 +143,7 @@ class RobustDescent {
   void narrow(double wanted, double most) {
     constexpr double kStep = 4.0;
     constexpr int kSteps = 4;
-    constexpr DescentOptions kRound{10, kRoughTolerance, kNegligibleDecrease};
+    constexpr linalg::DescentOptions kRound{10, kRoughTolerance, kNegligibleDecrease};
     RobustFit best = fit_;
     best.gate = std::numeric_limits<double>::infinity();
     double gate = wanted * std::pow(kStep, kSteps);
@@ -221,7 +221,7 @@ class RobustDescent {
     system_.linearise(fit_.state, fit_.coefficients);
     try {
       system_.factorise();
-    } catch (const NotPositiveDefinite&) {  // what is in leaves something undetermined
+    } catch (const linalg::NotPositiveDefinite&) {  // what is in leaves something undetermined
       system_.set_weights(fit_.weights);
       return false;
     }
@@ -233,7 +233,7 @@ class RobustDescent {
           system_.residuals().segment(system_.first_row(k), count) / std::sqrt(kFaint);
       Eigen::MatrixXd inner = fitted.covariance(system_, k) / kFaint;
       inner.diagonal().array() += 1.0;
-      if (error.dot(DenseLdlt(inner).solve(error)) > fit_.gate) continue;
+      if (error.dot(linalg::DenseLdlt(inner).solve(error)) > fit_.gate) continue;
       fit_.weights[k] = 1.0;
       any = true;
     }
@@ -266,7 +266,7 @@ class RobustDescent {
 
 RecordingDescent descend_softly(RecordingSystem& system, const RecordingProblem& problem,
                                 RecordingDescent fit, double gate, int rounds,
-                                const DescentOptions& options) {
+                                const linalg::DescentOptions& options) {
   for (int round = 0; round < rounds; ++round) {
     system.linearise(fit.state, fit.coefficients);
     system.set_weights(soft_weights(problem, system.squared_errors(), gate));
@@ -290,7 +290,7 @@ void follow_majority(const RecordingProblem& problem, RecordingState& state) {
     return false;
   };
   for (std::size_t k = 0; k < places.size(); ++k) {
-    const std::vector<Vector2> seen = thinned(places[k], kMostCompared);
+    const std::vector<Vector2> seen = statistics::thinned(places[k], kMostCompared);
     const std::ptrdiff_t here = votes(seen, before[k]);
     if (2 * here > std::ssize(seen)) continue;
     std::ptrdiff_t most = here;
@@ -321,4 +321,4 @@ RobustFit look_again(RecordingSystem& system, const RecordingProblem& problem, R
   return descent.take();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -23,14 +23,14 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// Rounds of Geman and McClure's weights of what may be wrong (1 of all else), each at the fit of
 /// the round before. The last weights stay set in the system.
 [[nodiscard]] RecordingDescent descend_softly(RecordingSystem& system,
                                               const RecordingProblem& problem, RecordingDescent fit,
                                               double gate, int rounds,
-                                              const DescentOptions& options);
+                                              const linalg::DescentOptions& options);
 
 /// Share of what may be wrong, loops apart, whose squared error is beyond a limit.
 [[nodiscard]] double share_beyond(const RecordingProblem& problem,
@@ -64,4 +64,4 @@ struct RobustFit {
 [[nodiscard]] RobustFit look_again(RecordingSystem& system, const RecordingProblem& problem,
                                    RobustFit fit);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 constexpr std::size_t kColumnsAtOnce = 8;
@@ -40,11 +40,12 @@ std::vector<RecordingSystem::NodeRows> RecordingSystem::node_rows(std::size_t me
 
 Eigen::MatrixXd RecordingSystem::transposed_times(const Eigen::MatrixXd& rows) const {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(normal_.unknowns(), rows.cols());
-  parallel_ranges(idx(rows.cols()), kColumnsAtOnce, [&](std::size_t begin, std::size_t end) {
-    const auto first = static_cast<Eigen::Index>(begin);
-    const auto columns = static_cast<Eigen::Index>(end - begin);
-    add_transposed_times(rows.middleCols(first, columns), result.middleCols(first, columns));
-  });
+  parallel::parallel_ranges(
+      idx(rows.cols()), kColumnsAtOnce, [&](std::size_t begin, std::size_t end) {
+        const auto first = static_cast<Eigen::Index>(begin);
+        const auto columns = static_cast<Eigen::Index>(end - begin);
+        add_transposed_times(rows.middleCols(first, columns), result.middleCols(first, columns));
+      });
   return result;
 }
 
@@ -73,7 +74,7 @@ void RecordingSystem::add_transposed_times(const Eigen::Ref<const Eigen::MatrixX
   }
 }
 
-SparseMatrix RecordingSystem::rows_by_nodes() const {
+linalg::SparseMatrix RecordingSystem::rows_by_nodes() const {
   std::vector<Eigen::Triplet<double, int>> entries;
   for (std::size_t k = 0; k < J_.size(); ++k) {
     const int rows = problem_.measurements[k].rows;
@@ -94,7 +95,7 @@ SparseMatrix RecordingSystem::rows_by_nodes() const {
     entries.emplace_back(state_row(k), normal_.offset(state_node(state.previous)),
                          -state.keep / state.sd);
   }
-  SparseMatrix J(rows_, normal_.unknowns());
+  linalg::SparseMatrix J(rows_, normal_.unknowns());
   J.setFromTriplets(entries.begin(), entries.end());
   return J;
 }
@@ -107,11 +108,12 @@ Eigen::MatrixXd RecordingSystem::times(const Eigen::MatrixXd& nodes) const {
 }
 
 void RecordingSystem::subtract_times(const Eigen::MatrixXd& nodes, Eigen::MatrixXd& rows) const {
-  parallel_ranges(idx(rows.cols()), kColumnsAtOnce, [&](std::size_t begin, std::size_t end) {
-    const auto first = static_cast<Eigen::Index>(begin);
-    const auto columns = static_cast<Eigen::Index>(end - begin);
-    subtract_some(nodes.middleCols(first, columns), rows.middleCols(first, columns));
-  });
+  parallel::parallel_ranges(
+      idx(rows.cols()), kColumnsAtOnce, [&](std::size_t begin, std::size_t end) {
+        const auto first = static_cast<Eigen::Index>(begin);
+        const auto columns = static_cast<Eigen::Index>(end - begin);
+        subtract_some(nodes.middleCols(first, columns), rows.middleCols(first, columns));
+      });
 }
 
 void RecordingSystem::subtract_some(const Eigen::Ref<const Eigen::MatrixXd>& nodes,
@@ -155,4 +157,4 @@ Eigen::MatrixXd RecordingSystem::transposed_rows(std::size_t measurement) const 
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -10,7 +10,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 void RecordingSystem::build_schur(double damping) {
   A_inverse_B_ = B_.cols() > 0 ? normal_.solve(B_) : B_;
@@ -18,13 +18,13 @@ void RecordingSystem::build_schur(double damping) {
   schur_ = (0.5 * (schur_ + schur_.transpose())).eval();
   schur_.diagonal() += damping * D_.diagonal();
   if (schur_.cols() == 0) return;
-  const DenseCholesky factor(schur_);
-  if (!factor.positive_definite()) throw NotPositiveDefinite(-1);
+  const linalg::DenseCholesky factor(schur_);
+  if (!factor.positive_definite()) throw linalg::NotPositiveDefinite(-1);
   schur_inverse_ = factor.inverse();
 }
 
 RecordingSystem::Step RecordingSystem::solve_step(double damping) {
-  factorise_damped(normal_, damping);
+  linalg::factorise_damped(normal_, damping);
   build_schur(damping);
   Step step;
   step.nodes = -gradient_;
@@ -34,8 +34,9 @@ RecordingSystem::Step RecordingSystem::solve_step(double damping) {
     step.coefficients = schur_inverse_ * (-border_gradient_ - B_.transpose() * step.nodes);
     step.nodes -= A_inverse_B_ * step.coefficients;
   }
-  step.predicted = predicted_decrease(step.nodes, gradient_, normal_.diagonal(), damping) +
-                   predicted_decrease(step.coefficients, border_gradient_, D_.diagonal(), damping);
+  step.predicted =
+      linalg::predicted_decrease(step.nodes, gradient_, normal_.diagonal(), damping) +
+      linalg::predicted_decrease(step.coefficients, border_gradient_, D_.diagonal(), damping);
   return step;
 }
 
@@ -169,7 +170,7 @@ Eigen::MatrixXd RecordingSystem::coefficient_covariance() const {
 double RecordingSystem::log_determinant() const {
   double sum = normal_.unknowns() > 0 ? normal_.log_determinant() : 0.0;
   if (schur_.cols() == 0) return sum;
-  return sum + DenseCholesky(schur_).log_determinant();
+  return sum + linalg::DenseCholesky(schur_).log_determinant();
 }
 
 double RecordingSystem::gradient_norm() const {
@@ -189,4 +190,4 @@ Eigen::MatrixXd RecordingSystem::scaled_schur() const {
   return scale.asDiagonal() * schur * scale.asDiagonal();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 bool gives_frame(const RecordingProblem& problem) {
@@ -180,4 +180,4 @@ RecordingState dead_reckoned(const RecordingProblem& problem) {
   return state;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -39,7 +39,7 @@
 #include <limits>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 struct StartOptions {
   double map_sd = 0.1;  ///< m per coordinate: how far off landmarks may be while laying down
@@ -69,4 +69,4 @@ struct RecordingStart {
 [[nodiscard]] std::vector<double> orientations_seen_from(const RecordingProblem& problem,
                                                          const std::vector<Pose>& poses);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 constexpr std::size_t kMeasurementsAtOnce = 64;
@@ -28,7 +28,7 @@ std::vector<int> sizes_of(const RecordingProblem& problem, const RecordingGauge&
 
 /// Of each measurement's noise terms with its nodes and with those before them; then of each state
 /// with the one before it.
-void add_state_pairs(const RecordingProblem& problem, std::vector<NodePair>& pairs) {
+void add_state_pairs(const RecordingProblem& problem, std::vector<linalg::NodePair>& pairs) {
   for (std::size_t k = 0; k < problem.noise_terms.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     const std::vector<NoiseTerm>& terms = problem.noise_terms[k];
@@ -48,8 +48,8 @@ void add_state_pairs(const RecordingProblem& problem, std::vector<NodePair>& pai
   }
 }
 
-std::vector<NodePair> pairs_of(const RecordingProblem& problem) {
-  std::vector<NodePair> pairs;
+std::vector<linalg::NodePair> pairs_of(const RecordingProblem& problem) {
+  std::vector<linalg::NodePair> pairs;
   for (const Measurement& one : problem.measurements) {
     if (one.to >= 0) pairs.push_back({one.from, one.to});
   }
@@ -57,10 +57,10 @@ std::vector<NodePair> pairs_of(const RecordingProblem& problem) {
   return pairs;
 }
 
-BlockSystem lay_out(const RecordingProblem& problem, const RecordingGauge& gauge) {
-  const std::vector<NodePair> pairs = pairs_of(problem);
+linalg::BlockSystem lay_out(const RecordingProblem& problem, const RecordingGauge& gauge) {
+  const std::vector<linalg::NodePair> pairs = pairs_of(problem);
   const int nodes = problem.nodes() + static_cast<int>(problem.noise_states.size());
-  return {sizes_of(problem, gauge), pairs, elimination_order(nodes, pairs)};
+  return {sizes_of(problem, gauge), pairs, linalg::elimination_order(nodes, pairs)};
 }
 
 bool touches_drives(const EffectParameters& border) {
@@ -140,7 +140,7 @@ void RecordingSystem::linearise_measurement(std::size_t k, const Point& at) {
   Vector4 value = one.value;
   if (driven && !motions_.empty()) value = moved_by_effects(k, at.offsets);
   value += one.value_offset;
-  ViewPattern view = view_of(border_, at.offsets, one);
+  effects::ViewPattern view = view_of(border_, at.offsets, one);
   if (at.noise.size() > 0 && driven) value += lasting_in_segment(problem_, k, at.noise);
   if (at.noise.size() > 0 && !driven) view = lasting_in_view(problem_, k, view, at.noise);
   const MeasurementRows rows = measurement_rows(problem_, one, at.state, value, view);
@@ -175,10 +175,11 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
   const Eigen::VectorXd noise =
       state.noise.size() == states ? state.noise : Eigen::VectorXd::Zero(states);
   const Point at{state, offsets, noise, held};
-  parallel_ranges(problem_.measurements.size(), kMeasurementsAtOnce,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t k = begin; k < end; ++k) linearise_measurement(k, at);
-                  });
+  parallel::parallel_ranges(problem_.measurements.size(), kMeasurementsAtOnce,
+                            [&](std::size_t begin, std::size_t end) {
+                              for (std::size_t k = begin; k < end; ++k)
+                                linearise_measurement(k, at);
+                            });
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
     Vector4 error = Vector4::Zero();
     error.head(problem_.measurements[k].rows) =
@@ -329,11 +330,11 @@ void RecordingSystem::evaluate_effect_parameters(std::size_t k, const Measuremen
     return;
   }
   for (std::size_t c = 0; c < unknown_.size(); ++c) {
-    const ViewPattern* unit = unit_view_of(border_[idx(unknown_[c])], one);
+    const effects::ViewPattern* unit = unit_view_of(border_[idx(unknown_[c])], one);
     if (unit == nullptr) continue;
     const Vector4 column = W * rows.by_view * unit->vector();
     M.col(static_cast<Eigen::Index>(c)) = column.head(one.rows);
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -28,7 +28,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 struct RecordingGauge {
   bool hold_landmark = false;  ///< the first one
@@ -132,7 +132,7 @@ class RecordingSystem {
   [[nodiscard]] Eigen::MatrixXd transposed_times(const Eigen::MatrixXd& rows) const;
   [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& nodes) const;
   /// J as it is, rows x unknowns of normal_equations().
-  [[nodiscard]] SparseMatrix rows_by_nodes() const;
+  [[nodiscard]] linalg::SparseMatrix rows_by_nodes() const;
   /// rows -= J nodes.
   void subtract_times(const Eigen::MatrixXd& nodes, Eigen::MatrixXd& rows) const;
   /// The columns less their projection on J: what landmarks and poses leave of them. Call after
@@ -154,8 +154,8 @@ class RecordingSystem {
   [[nodiscard]] int unknowns() const;  ///< free ones, coefficients among them
   [[nodiscard]] const RecordingGauge& gauge() const { return gauge_; }
   [[nodiscard]] double gradient_norm() const;
-  [[nodiscard]] BlockSystem& normal_equations() { return normal_; }
-  [[nodiscard]] const BlockSystem& normal_equations() const { return normal_; }
+  [[nodiscard]] linalg::BlockSystem& normal_equations() { return normal_; }
+  [[nodiscard]] const linalg::BlockSystem& normal_equations() const { return normal_; }
   /// The Schur complement with its diagonal scaled by D's: 1 where a coefficient is independent of
   /// all else, 0 where it cannot be determined.
   [[nodiscard]] Eigen::MatrixXd scaled_schur() const;
@@ -220,7 +220,7 @@ class RecordingSystem {
   int step_pair_ = 0;            ///< the first of those between a state and the one before
   int measured_rows_ = 0;
   int rows_ = 0;
-  BlockSystem normal_;
+  linalg::BlockSystem normal_;
   std::vector<Whitened> J_;
   std::vector<Motion> motions_;  ///< per measurement, of segments; none without effects on drives
   double slack_ = kFineSlack;
@@ -236,4 +236,4 @@ class RecordingSystem {
   Eigen::MatrixXd schur_inverse_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 /// Added to what the sum is already.
@@ -50,10 +50,10 @@ RestrictedLikelihood restricted_likelihood(RecordingSystem& system, const Record
   Eigen::VectorXd left = system.residuals() + system.times(step.nodes);
   if (step.coefficients.size() > 0) left += system.border() * step.coefficients;
   const Eigen::VectorXd g = columns.transpose() * left;
-  const DenseLdlt factor(information_of(system, columns));
+  const linalg::DenseLdlt factor(information_of(system, columns));
   result.taken = g.dot(factor.solve(g));
   result.information = factor.log_determinant();
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -15,7 +15,7 @@
 
 #include "estimation/recording_system.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 struct RestrictedLikelihood {
   double without = 0.0;      ///< -2 log R without the further columns
@@ -44,4 +44,4 @@ struct RestrictedLikelihood {
                                                          const Eigen::MatrixXd& columns = {},
                                                          double elsewhere = 0.0);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -18,7 +18,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 inline constexpr std::size_t kMostReadings = 150;  ///< more are thinned
 inline constexpr double kHuber = 2.0;              ///< standard deviations
@@ -82,4 +82,4 @@ template <typename Reading>
   return std::max(1.0, best.cost / static_cast<double>(std::max<std::size_t>(readings, 3) - 2));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 double soft_weight(double squared_error, double gate) {
   return std::pow(gate / (squared_error + gate), 2);
@@ -20,4 +20,4 @@ double first_bend(double largest_squared_error, double gate) {
   return gate / (2.0 * largest_squared_error - gate);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

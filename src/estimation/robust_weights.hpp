@@ -15,7 +15,7 @@
 
 #include <limits>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// Geman and McClure: (c^2/(r^2 + c^2))^2.
 [[nodiscard]] double soft_weight(double squared_error, double gate);
@@ -56,4 +56,4 @@ void reconsider(Again again) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

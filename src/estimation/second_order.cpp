@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/second_order.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 constexpr double kStep = 1e-5;  // m, rad or fraction
 
 using Slopes = Eigen::Matrix<double, 15, 1>;
 
-ViewPattern pattern_of(const ViewVector& v) {
+effects::ViewPattern pattern_of(const effects::ViewVector& v) {
   return {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]};
 }
 
@@ -27,7 +27,7 @@ Vector2 place_of(const RecordingProblem& problem, const RecordingState& state, i
 }
 
 SecondOrder second_order_of_way(const RecordingProblem& problem, const Measurement& one,
-                                const RecordingState& state, const ViewPattern& view,
+                                const RecordingState& state, const effects::ViewPattern& view,
                                 const Vector4& weighted) {
   const bool by_view = one.kind->facts().curvature == Curvature::of_a_way_by_view;
   const double turn = by_view ? view.heading : 0.0;
@@ -46,8 +46,8 @@ SecondOrder second_order_of_way(const RecordingProblem& problem, const Measureme
 }  // namespace
 
 SecondOrder second_order(const RecordingProblem& problem, const Measurement& one,
-                         RecordingState& state, const ViewPattern& view, const Vector4& weighted,
-                         bool with_view) {
+                         RecordingState& state, const effects::ViewPattern& view,
+                         const Vector4& weighted, bool with_view) {
   SecondOrder result = SecondOrder::Zero();
   const Curvature curvature = one.kind->facts().curvature;
   if (curvature == Curvature::none) return result;
@@ -55,7 +55,7 @@ SecondOrder second_order(const RecordingProblem& problem, const Measurement& one
   if (curvature != Curvature::general && !with_view && !bent) {
     return second_order_of_way(problem, one, state, view, weighted);
   }
-  const auto slopes = [&](const ViewPattern& at) -> Slopes {
+  const auto slopes = [&](const effects::ViewPattern& at) -> Slopes {
     const MeasurementRows rows = measurement_rows(problem, one, state, one.value, at);
     Slopes all;
     all << rows.by_from.transpose() * weighted, rows.by_to.transpose() * weighted,
@@ -78,8 +78,8 @@ SecondOrder second_order(const RecordingProblem& problem, const Measurement& one
   differentiate(one.from, 0);
   differentiate(one.to, kSecondOrderTo);
   if (with_view && !is_driven(one)) {
-    for (Eigen::Index k = 0; k < ViewVector::RowsAtCompileTime; ++k) {
-      const ViewVector step = kStep * ViewVector::Unit(k);
+    for (Eigen::Index k = 0; k < effects::ViewVector::RowsAtCompileTime; ++k) {
+      const effects::ViewVector step = kStep * effects::ViewVector::Unit(k);
       result.col(kSecondOrderView + k) =
           (slopes(pattern_of(view.vector() + step)) - slopes(pattern_of(view.vector() - step))) /
           (2.0 * kStep);
@@ -94,7 +94,7 @@ SegmentBends segment_bends(const RecordingProblem& problem, const Measurement& s
   const auto count = static_cast<Eigen::Index>(unknown.size());
   SegmentBends result;
   result.fill(Eigen::MatrixXd::Zero(count, count));
-  const std::vector<const std::vector<DrivePattern>*> patterns =
+  const std::vector<const std::vector<effects::DrivePattern>*> patterns =
       drive_patterns(border, idx(segment.session));
   for (Eigen::Index c = 0; c < count; ++c) {
     const int place = unknown[idx(static_cast<int>(c))];
@@ -116,4 +116,4 @@ SegmentBends segment_bends(const RecordingProblem& problem, const Measurement& s
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -21,7 +21,7 @@
 
 #include <array>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 using SecondOrder = Eigen::Matrix<double, 15, 15>;
 inline constexpr int kSecondOrderTo = 3;    ///< where `to` begins
@@ -31,7 +31,7 @@ inline constexpr int kSecondOrderView = 6;  ///< where the view begins
 /// view only where `with_view`; of what is driven the view has no part.
 [[nodiscard]] SecondOrder second_order(const RecordingProblem& problem,
                                        const Measurement& measurement, RecordingState& state,
-                                       const ViewPattern& view, const Vector4& weighted,
+                                       const effects::ViewPattern& view, const Vector4& weighted,
                                        bool with_view);
 
 /// Second derivatives of a segment's four numbers by the border's unknown coefficients, one matrix
@@ -41,4 +41,4 @@ using SegmentBends = std::array<Eigen::MatrixXd, 4>;
                                          const Measurement& segment, const EffectParameters& border,
                                          const Eigen::VectorXd& offsets);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 constexpr double kLeastSegmentSd = 1e-5;  // m and rad
@@ -19,7 +19,7 @@ struct Step {
   double turn = 0.0;
   double compass = 0.0;
 
-  [[nodiscard]] Vector2 end(const UnitArc& arc) const {
+  [[nodiscard]] Vector2 end(const drive::UnitArc& arc) const {
     return path * arc.end + slip * quarter_turn(arc.end);
   }
 };
@@ -42,15 +42,18 @@ class MeanAngle {
   int count_ = 0;
 };
 
-const DrivePattern* pattern_at(const std::vector<DrivePattern>* patterns, std::size_t row) {
+const effects::DrivePattern* pattern_at(const std::vector<effects::DrivePattern>* patterns,
+                                        std::size_t row) {
   return patterns == nullptr || patterns->empty() ? nullptr : &(*patterns)[row];
 }
 
-Step step_of(const SegmentRow& row, const std::vector<const std::vector<DrivePattern>*>& patterns,
+Step step_of(const SegmentRow& row,
+             const std::vector<const std::vector<effects::DrivePattern>*>& patterns,
              const Eigen::VectorXd& coefficients) {
   Step step{row.path, row.slip, row.turn, 0.0};
   for (Eigen::Index k = 0; k < coefficients.size(); ++k) {
-    const DrivePattern* pattern = pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
+    const effects::DrivePattern* pattern =
+        pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
     if (pattern == nullptr) continue;
     step.path += coefficients[k] * row.part * pattern->advance;
     step.slip += coefficients[k] * row.part * pattern->slip;
@@ -64,8 +67,8 @@ Step step_of(const SegmentRow& row, const std::vector<const std::vector<DrivePat
 
 std::vector<SegmentRow> segment_rows(const MotionRows& drive, double from, double to) {
   std::vector<SegmentRow> rows;
-  for (const DriveRow& row : rows_between(drive, from, to)) {
-    const BodyMotion motion = motion_of(drive, row);
+  for (const odometry::DriveRow& row : odometry::rows_between(drive, from, to)) {
+    const BodyMotion motion = odometry::motion_of(drive, row);
     const double reading = drive.has_compass() && row.ends ? drive.heading[row.row] : kAbsent;
     rows.push_back(
         {row.row, row.part, motion.forward, motion.turn, row.duration, reading, motion.sideways});
@@ -79,9 +82,9 @@ int readings_of(const std::vector<SegmentRow>& rows) {
   return count;
 }
 
-SegmentRow with_effects(SegmentRow row, const std::vector<DrivePattern>& sum) {
+SegmentRow with_effects(SegmentRow row, const std::vector<effects::DrivePattern>& sum) {
   if (sum.empty()) return row;
-  const DrivePattern& more = sum[row.row];
+  const effects::DrivePattern& more = sum[row.row];
   row.path += row.part * more.advance;
   row.slip += row.part * more.slip;
   row.turn += row.part * more.turn;
@@ -90,7 +93,7 @@ SegmentRow with_effects(SegmentRow row, const std::vector<DrivePattern>& sum) {
 }
 
 std::vector<SegmentRow> with_effects(std::vector<SegmentRow> rows,
-                                     const std::vector<DrivePattern>& sum) {
+                                     const std::vector<effects::DrivePattern>& sum) {
   for (SegmentRow& row : rows) row = with_effects(row, sum);
   return rows;
 }
@@ -99,9 +102,10 @@ SegmentMotion segment_motion(const std::vector<SegmentRow>& rows) {
   return segment_motion(rows, {}, Eigen::VectorXd()).motion;
 }
 
-SegmentWithEffects segment_motion(const std::vector<SegmentRow>& rows,
-                                  const std::vector<const std::vector<DrivePattern>*>& patterns,
-                                  const Eigen::VectorXd& coefficients) {
+SegmentWithEffects segment_motion(
+    const std::vector<SegmentRow>& rows,
+    const std::vector<const std::vector<effects::DrivePattern>*>& patterns,
+    const Eigen::VectorXd& coefficients) {
   const Eigen::Index count = coefficients.size();
   Pose pose;
   Eigen::Matrix<double, 4, Eigen::Dynamic> slopes(4, count);
@@ -110,12 +114,13 @@ SegmentWithEffects segment_motion(const std::vector<SegmentRow>& rows,
   int readings = 0;
   for (const SegmentRow& row : rows) {
     const Step step = step_of(row, patterns, coefficients);
-    const UnitArc arc = unit_arc(step.turn);
+    const drive::UnitArc arc = drive::unit_arc(step.turn);
     const Matrix2 R = rotation(pose.heading);
     const Vector2 chord = R * step.end(arc);
     for (Eigen::Index k = 0; k < count; ++k) {
       slopes.col(k).head<2>() += slopes(2, k) * quarter_turn(chord);
-      const DrivePattern* pattern = pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
+      const effects::DrivePattern* pattern =
+          pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
       if (pattern == nullptr) continue;
       const Vector2 own =
           row.part *
@@ -131,7 +136,8 @@ SegmentWithEffects segment_motion(const std::vector<SegmentRow>& rows,
     ++readings;
     mean.add(row.reading - step.compass - pose.heading);
     for (Eigen::Index k = 0; k < count; ++k) {
-      const DrivePattern* pattern = pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
+      const effects::DrivePattern* pattern =
+          pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
       slopes(3, k) -= slopes(2, k) + (pattern == nullptr ? 0.0 : pattern->compass);
     }
   }
@@ -148,7 +154,7 @@ std::vector<Matrix4> row_influences(const std::vector<SegmentRow>& rows) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const SegmentRow& row = rows[k];
     const Step step{row.path, row.slip, row.turn};
-    const UnitArc arc = unit_arc(step.turn);
+    const drive::UnitArc arc = drive::unit_arc(step.turn);
     const Matrix2 R = row.part * rotation(pose.heading);
     Matrix4& own = influences[k];
     own.block<2, 1>(0, 0) = R * arc.end;
@@ -180,12 +186,13 @@ Matrix4 segment_covariance(const MotionRows& drive, const std::vector<SegmentRow
   int readings = 0;
   for (const SegmentRow& row : rows) {
     const Matrix3 T = pose_rotation(pose.heading);
-    const Pose step = displacement_of({row.path, row.slip, row.turn});
+    const Pose step = odometry::displacement_of({row.path, row.slip, row.turn});
     Matrix4 F = Matrix4::Identity();
     F.block<2, 1>(0, 2) = quarter_turn(T.topLeftCorner<2, 2>() * step.position());
     P = F * P * F.transpose();
     P.topLeftCorner<3, 3>() +=
-        T * row_covariance(drive, row.row, row.part, row.duration, robot, noise) * T.transpose();
+        T * odometry::row_covariance(drive, row.row, row.part, row.duration, robot, noise) *
+        T.transpose();
     pose = compose(pose, step);
     if (std::isnan(row.reading)) continue;
     ++readings;
@@ -204,4 +211,4 @@ Matrix4 segment_covariance(const MotionRows& drive, const std::vector<SegmentRow
   return 0.5 * (P + P.transpose());
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

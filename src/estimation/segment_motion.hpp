@@ -32,7 +32,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 using Vector4 = Eigen::Vector4d;
 using Matrix4 = Eigen::Matrix4d;
@@ -80,9 +80,10 @@ struct SegmentMotion {
 [[nodiscard]] int readings_of(const std::vector<SegmentRow>& rows);
 
 /// A row as effects move it that do this together to the drive's rows (empty: nothing).
-[[nodiscard]] SegmentRow with_effects(SegmentRow row, const std::vector<DrivePattern>& sum);
+[[nodiscard]] SegmentRow with_effects(SegmentRow row,
+                                      const std::vector<effects::DrivePattern>& sum);
 [[nodiscard]] std::vector<SegmentRow> with_effects(std::vector<SegmentRow> rows,
-                                                   const std::vector<DrivePattern>& sum);
+                                                   const std::vector<effects::DrivePattern>& sum);
 
 /// The motion as the rows have it.
 [[nodiscard]] SegmentMotion segment_motion(const std::vector<SegmentRow>& rows);
@@ -96,7 +97,7 @@ struct SegmentWithEffects {
 };
 [[nodiscard]] SegmentWithEffects segment_motion(
     const std::vector<SegmentRow>& rows,
-    const std::vector<const std::vector<DrivePattern>*>& patterns,
+    const std::vector<const std::vector<effects::DrivePattern>*>& patterns,
     const Eigen::VectorXd& coefficients);
 
 /// What one unit of more motion in each row does to the segment's displacement (3) and mean
@@ -109,4 +110,4 @@ struct SegmentWithEffects {
                                          const std::vector<SegmentRow>& rows, const Robot& robot,
                                          const Noise& noise);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -13,7 +13,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 constexpr double kLeastSd = 1e-5;  // m and rad
@@ -65,8 +65,9 @@ RowsAlone rows_alone(const MotionRows& drive, const std::vector<SegmentRow>& row
   alone.steps.reserve(rows.size());
   alone.Q.reserve(rows.size());
   for (const SegmentRow& row : rows) {
-    alone.steps.push_back(displacement_of({row.path, row.slip, row.turn}));
-    alone.Q.push_back(row_covariance(drive, row.row, row.part, row.duration, robot, noise));
+    alone.steps.push_back(odometry::displacement_of({row.path, row.slip, row.turn}));
+    alone.Q.push_back(
+        odometry::row_covariance(drive, row.row, row.part, row.duration, robot, noise));
   }
   alone.recorded = lay(rows, alone.steps);
   return alone;
@@ -155,7 +156,8 @@ SegmentNoise believed(const RecordingProblem& problem, std::size_t k,
 
 SegmentNoise believed_noise(const RecordingProblem& problem, std::size_t k,
                             const std::vector<DrivenRecording>& recordings, const Model& model,
-                            const std::vector<DrivePattern>& effects, const RecordingState& state) {
+                            const std::vector<effects::DrivePattern>& effects,
+                            const RecordingState& state) {
   const Measurement& one = problem.measurements[k];
   const std::vector<SegmentRow> rows = with_effects(problem.segments[one.source], effects);
   const RowsAlone alone =
@@ -166,10 +168,10 @@ SegmentNoise believed_noise(const RecordingProblem& problem, std::size_t k,
 double relinearise(RecordingProblem& problem, const std::vector<DrivenRecording>& recordings,
                    const Model& model, const EffectParameters& border,
                    const Eigen::VectorXd& offsets, const RecordingState& state) {
-  const std::vector<std::vector<DrivePattern>> effects =
+  const std::vector<std::vector<effects::DrivePattern>> effects =
       summed_patterns(border, offsets, recordings.size());
   std::vector<double> changes(problem.measurements.size(), 0.0);
-  parallel_for(problem.measurements.size(), [&](std::size_t k) {
+  parallel::parallel_for(problem.measurements.size(), [&](std::size_t k) {
     Measurement& one = problem.measurements[k];
     if (!is_segment(one)) return;
     const SegmentNoise at =
@@ -185,4 +187,4 @@ double relinearise(RecordingProblem& problem, const std::vector<DrivenRecording>
   return changes.empty() ? 0.0 : *std::max_element(changes.begin(), changes.end());
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -25,7 +25,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 struct SegmentNoise {
   Vector4 value = Vector4::Zero();             ///< v
@@ -47,7 +47,7 @@ struct SegmentNoise {
 [[nodiscard]] SegmentNoise believed_noise(const RecordingProblem& problem, std::size_t k,
                                           const std::vector<DrivenRecording>& recordings,
                                           const Model& model,
-                                          const std::vector<DrivePattern>& effects,
+                                          const std::vector<effects::DrivePattern>& effects,
                                           const RecordingState& state);
 
 /// Takes all segments' noise where the state believes it: changes their `bend` and whitener.
@@ -56,4 +56,4 @@ double relinearise(RecordingProblem& problem, const std::vector<DrivenRecording>
                    const Model& model, const EffectParameters& border,
                    const Eigen::VectorXd& offsets, const RecordingState& state);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 std::vector<std::size_t> truth_rows_used(const DrivenRecording& recording,
@@ -48,13 +48,13 @@ std::vector<std::size_t> fixes_used(const DrivenRecording& recording,
   std::vector<std::size_t> used;
   if (!options.fixes || recording.fixes.empty()) return used;
   const MotionRows& drive = recording.drive;
-  const std::vector<double> driven = driven_path(drive);
+  const std::vector<double> driven = drive::driven_path(drive);
   double last_t = 0.0;
   double last_path = 0.0;
   for (std::size_t k = 0; k < recording.fixes.size(); ++k) {
     const double t = recording.fixes[k].t;
     if (t < drive.start() || t > drive.t.back()) continue;
-    const double path = path_at(drive, driven, t);
+    const double path = drive::path_at(drive, driven, t);
     const bool soon = t - last_t < options.fix_gap && path - last_path < options.fix_path;
     if (!used.empty() && soon) continue;
     used.push_back(k);
@@ -87,7 +87,8 @@ std::vector<double> outside(std::vector<double> times, const std::vector<TimeSpa
                        [t](const TimeSpan& span) { return span.from < t && t < span.to; });
   });
   const auto drives = [&](std::size_t from) {
-    return from + 1 < times.size() && !overlaps_any({times[from], times[from + 1]}, left_out);
+    return from + 1 < times.size() &&
+           !recording::overlaps_any({times[from], times[from + 1]}, left_out);
   };
   std::vector<double> kept;
   for (std::size_t k = 0; k < times.size(); ++k) {
@@ -115,7 +116,7 @@ std::vector<double> session_instants(const DrivenRecording& recording, const Row
   const std::vector<double> times = outside(times_measured(recording, used), left_out);
   std::vector<double> instants;
   for (std::size_t k = 0; k < times.size(); ++k) {
-    if (k > 0 && !overlaps_any({times[k - 1], times[k]}, left_out)) {
+    if (k > 0 && !recording::overlaps_any({times[k - 1], times[k]}, left_out)) {
       const std::vector<SegmentRow> rows = segment_rows(recording.drive, times[k - 1], times[k]);
       for (const double t : motion_changes(recording.drive, rows, robot,
                                            {options.least_spin, options.least_drive})) {
@@ -127,4 +128,4 @@ std::vector<double> session_instants(const DrivenRecording& recording, const Row
   return instants;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

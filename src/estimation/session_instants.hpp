@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// Rows of truth and fixes; of sightings and loops all.
 struct RowsUsed {
@@ -27,4 +27,4 @@ struct RowsUsed {
                                                    const ProblemOptions& options,
                                                    const std::vector<TimeSpan>& left_out);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

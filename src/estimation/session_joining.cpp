@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 /// Places of the same landmarks in a session and in the map.
@@ -34,7 +34,7 @@ Vector2 median_place(const std::vector<Vector2>& places) {
     x.push_back(at.x());
     y.push_back(at.y());
   }
-  return {median(x), median(y)};
+  return {statistics::median(x), statistics::median(y)};
 }
 
 /// Without landmarks that lie here, of those that lie there, ten times as far apart as any there:
@@ -127,4 +127,4 @@ MapSoFar with_session(MapSoFar known, const RecordingProblem& problem, const Pos
   return known;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

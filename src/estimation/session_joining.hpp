@@ -7,7 +7,7 @@
 #include "estimation/laid_session.hpp"
 #include "estimation/problem_part.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 struct MapSoFar {
   PlacedLandmarks landmarks;
@@ -27,4 +27,4 @@ struct MapSoFar {
                                     const PoseSpan& span, const ProblemPart& session,
                                     const LaidSession& laid);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 /// m or rad: how far off a path may be. The gradient takes in one more step, which leaves of a
@@ -45,7 +45,7 @@ void drop_survey(SessionRows& rows) {
 
 /// Second derivatives and gradient, between own unknowns p and shared ones u.
 struct SessionSummary::Coupled {
-  SparseMatrix own_by_map;             ///< f_pu, landmarks and orientations
+  linalg::SparseMatrix own_by_map;     ///< f_pu, landmarks and orientations
   Eigen::MatrixXd own_by_coefficient;  ///< f_pu, the rest
   Eigen::MatrixXd shared;              ///< f_uu
   Eigen::VectorXd gradient;            ///< f_u
@@ -152,7 +152,7 @@ Eigen::MatrixXd SessionSummary::numbers_by(std::size_t k, const Touched& touched
   F.block(kSecondOrderTo, column, touched.width, touched.width).setIdentity();
   column += touched.width;
   for (const int effect : unknown_coefficients(rows_->border)) {
-    const ViewPattern* unit = unit_view_of(rows_->border[idx(effect)], one);
+    const effects::ViewPattern* unit = unit_view_of(rows_->border[idx(effect)], one);
     if (unit != nullptr) F.block<9, 1>(kSecondOrderView, column) = unit->vector();
     ++column;
   }
@@ -170,7 +170,7 @@ Eigen::MatrixXd SessionSummary::curvature_of(std::size_t k, const Touched& touch
   const bool plain = coefficients_ == 0 && problem().noise_terms.empty();
   const Eigen::MatrixXd F = plain ? Eigen::MatrixXd() : numbers_by(k, touched);
   const bool with_view = !plain && !F.bottomRows<9>().isZero(0.0);
-  ViewPattern view = view_of(rows_->border, offsets, one);
+  effects::ViewPattern view = view_of(rows_->border, offsets, one);
   if (!problem().noise_states.empty() && !is_driven(one)) {
     view = lasting_in_view(problem(), k, view, state.noise);
   }
@@ -208,7 +208,7 @@ SessionSummary::Coupled SessionSummary::couple(RecordingState& state,
                                                const Eigen::VectorXd& coefficients, bool curved) {
   const Eigen::VectorXd offsets = offsets_at(rows_->border, coefficients);
   const Eigen::MatrixXd& M = system_->border();
-  const BlockSystem& normal = system_->normal_equations();
+  const linalg::BlockSystem& normal = system_->normal_equations();
   const Eigen::Index C = coefficients_;
   Coupled result;
   result.shared = Eigen::MatrixXd::Zero(shared(), shared());
@@ -262,7 +262,7 @@ SessionSummary::Coupled SessionSummary::couple(RecordingState& state,
 /// Own unknowns go to where they are best for these of the map.
 void SessionSummary::relax(RecordingState& state, const Eigen::VectorXd& coefficients,
                            double still) {
-  BlockSystem& normal = system_->normal_equations();
+  linalg::BlockSystem& normal = system_->normal_equations();
   for (int step = 0; step < kMostSteps; ++step) {
     static_cast<void>(system_->linearise(state, coefficients));
     if (normal.unknowns() == 0) return;
@@ -279,7 +279,7 @@ void SessionSummary::relax(RecordingState& state, const Eigen::VectorXd& coeffic
 void SessionSummary::factorise() {
   try {
     system_->normal_equations().factorise();
-  } catch (const NotPositiveDefinite&) {
+  } catch (const linalg::NotPositiveDefinite&) {
     refuse_loose();
   }
 }
@@ -297,7 +297,7 @@ SessionSummary::Quadratic SessionSummary::reduced(const Eigen::VectorXd& u, Reco
   const bool whole = kind == SecondDerivatives::whole;
   relax(state, coefficients, whole ? kStill : kVeryStill);
   if (whole && with_information) bend(offsets_at(rows_->border, coefficients));
-  BlockSystem& normal = system_->normal_equations();
+  linalg::BlockSystem& normal = system_->normal_equations();
   Coupled coupled = couple(state, coefficients, whole);
   try {
     factorise();
@@ -333,7 +333,7 @@ void SessionSummary::require_determined(const Eigen::VectorXd& u) {
   static_cast<void>(system_->linearise(state, u.tail(coefficients_)));
   try {
     if (!find_loose_nodes(*system_).empty()) refuse_loose();
-  } catch (const NotPositiveDefinite&) {
+  } catch (const linalg::NotPositiveDefinite&) {
     refuse_loose();  // where all weights are 0
   }
 }
@@ -352,4 +352,4 @@ SessionSummary::Quadratic SessionSummary::value_at(const Eigen::VectorXd& u) {
   return reduced(u, state, SecondDerivatives::whole, false);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

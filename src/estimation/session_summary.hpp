@@ -37,7 +37,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// A session's rows as a problem of its own (of one session, without survey), with its columns.
 struct SessionRows {
@@ -134,4 +134,4 @@ class SessionSummary {
   Taken taken_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -9,13 +9,13 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 /// Roughly: what is beyond the gate is held out, or weighs less.
 RecordingDescent descend_roughly(RecordingSystem& system, const RecordingProblem& problem,
                                  const StartOptions& options, RecordingDescent fit) {
-  constexpr DescentOptions kRough{30, 1e-4, kNegligibleDecrease};
+  constexpr linalg::DescentOptions kRough{30, 1e-4, kNegligibleDecrease};
   if (std::isfinite(options.gate) && has_loops(problem)) {
     system.linearise(fit.state, fit.coefficients);
     RobustFit robust{fit.state, fit.coefficients, {}, options.gate};
@@ -30,7 +30,7 @@ RecordingDescent descend_roughly(RecordingSystem& system, const RecordingProblem
   }
   if (std::isfinite(options.gate)) {
     follow_majority(problem, fit.state);
-    constexpr DescentOptions kRound{5, 1e-4, kNegligibleDecrease};
+    constexpr linalg::DescentOptions kRound{5, 1e-4, kNegligibleDecrease};
     return descend_softly(system, problem, std::move(fit), options.gate, 4, kRound);
   }
   return descend(system, fit.state, fit.coefficients, kRough);
@@ -68,7 +68,8 @@ Eigen::MatrixXd coefficient_covariance_of(RecordingSystem& system, double chi2,
                                           const Eigen::MatrixXd& prior) {
   try {
     system.factorise();
-  } catch (const NotPositiveDefinite&) {  // rounding has eaten what the stretch says of them
+  } catch (
+      const linalg::NotPositiveDefinite&) {  // rounding has eaten what the stretch says of them
     return prior;
   }
   const double dispersion = std::max(1.0, chi2 / std::max(1, system.rows() - system.unknowns()));
@@ -94,7 +95,8 @@ AdjustedStretch adjust_stretch(const SessionToLay& session, LaidSession laid, in
   RecordingDescent fit{state_laid(stretch, laid), laid.coefficients.values};
   try {
     fit = descend_roughly(system, stretch.problem, session.options, std::move(fit));
-  } catch (const NotPositiveDefinite&) {  // rounding leaves no step to take: it stays as laid
+  } catch (
+      const linalg::NotPositiveDefinite&) {  // rounding leaves no step to take: it stays as laid
     return {std::move(laid), lost()};
   }
   laid = with_state(stretch, fit.state, std::move(laid));
@@ -106,4 +108,4 @@ AdjustedStretch adjust_stretch(const SessionToLay& session, LaidSession laid, in
   return {std::move(laid), lost()};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

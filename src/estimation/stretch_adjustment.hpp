@@ -6,7 +6,7 @@
 
 #include "estimation/laid_session.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 struct AdjustedStretch {
   LaidSession laid;
@@ -17,4 +17,4 @@ struct AdjustedStretch {
 [[nodiscard]] AdjustedStretch adjust_stretch(const SessionToLay& session, LaidSession laid,
                                              int count);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

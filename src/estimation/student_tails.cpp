@@ -9,11 +9,11 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 bool has_used_tails(const NoiseProcess& process) {
   return process.tails > 0.0 && process.process == ProcessKind::white &&
-         acts_on_sightings(process.channel);
+         effects::acts_on_sightings(process.channel);
 }
 
 double tail_information(double tails, int rows) {
@@ -32,7 +32,7 @@ double take_tails(RecordingProblem& problem, const EffectParameters& border,
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     Measurement& one = problem.measurements[k];
     if (!(one.tails > 0.0)) continue;
-    ViewPattern view = view_of(border, offsets, one);
+    effects::ViewPattern view = view_of(border, offsets, one);
     if (state.noise.size() > 0) view = lasting_in_view(problem, k, view, state.noise);
     const MeasurementRows rows = measurement_rows(problem, one, state, one.value, view);
     const double squared_error = (one.whitener * rows.error).squaredNorm();
@@ -46,4 +46,4 @@ double take_tails(RecordingProblem& problem, const EffectParameters& border,
   return most;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -21,7 +21,7 @@
 #include "estimation/effect_parameters.hpp"
 #include "estimation/recording_problem.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// Whether tails of such a process are used.
 [[nodiscard]] bool has_used_tails(const NoiseProcess& process);
@@ -37,4 +37,4 @@ namespace trussmap {
 double take_tails(RecordingProblem& problem, const EffectParameters& border,
                   const Eigen::VectorXd& offsets, const RecordingState& state);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

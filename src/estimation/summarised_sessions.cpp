@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 void append_to(Eigen::VectorXd& all, const Eigen::VectorXd& values) {
@@ -61,9 +61,9 @@ void SummarisedSessions::require_tied(const SessionRows& rows,
   }
   if (places.size() > 1 || direction) return;
   throw SolveError(
-      trussmap::joined(problem.sessions.front(), " can turn about ", *places.begin(),
-                       ", by which alone it is tied to the sessions before; sight another "
-                       "landmark of theirs"));
+      trussmap::text::joined(problem.sessions.front(), " can turn about ", *places.begin(),
+                             ", by which alone it is tied to the sessions before; sight another "
+                             "landmark of theirs"));
 }
 
 /// Gives what the session brings its place in x.
@@ -156,7 +156,7 @@ std::vector<Eigen::Index> SummarisedSessions::apart() const {
 }
 
 /// Of H, with what is apart from all else.
-DenseCholesky SummarisedSessions::factor() const {
+linalg::DenseCholesky SummarisedSessions::factor() const {
   constexpr double kLeastShare = 1e-8;  // where nothing is told rounding leaves 1e-11
   Eigen::MatrixXd H = sum_.information;
   for (const Eigen::Index at : apart()) {
@@ -164,7 +164,7 @@ DenseCholesky SummarisedSessions::factor() const {
     H.col(at).setZero();
     H(at, at) = 1.0;
   }
-  DenseCholesky result(H);
+  linalg::DenseCholesky result(H);
   if (!result.positive_definite() || result.least_pivot_share() < kLeastShare) {
     throw SolveError(
         "the sessions leave the map or a coefficient undetermined; sight more landmarks, or "
@@ -173,7 +173,7 @@ DenseCholesky SummarisedSessions::factor() const {
   return result;
 }
 
-Eigen::VectorXd SummarisedSessions::step(const DenseCholesky& factor) const {
+Eigen::VectorXd SummarisedSessions::step(const linalg::DenseCholesky& factor) const {
   Eigen::VectorXd gradient = sum_.information * (sum_.x - sum_.origin) - sum_.pull;
   for (const Eigen::Index at : sum_.held) gradient[at] = 0.0;
   return -factor.solve(gradient);
@@ -337,4 +337,4 @@ Eigen::MatrixXd SummarisedSessions::coefficient_covariance() const {
   return covariance().topLeftCorner(sum_.coefficients, sum_.coefficients);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

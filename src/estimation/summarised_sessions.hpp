@@ -39,7 +39,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 struct SummaryOptions {
   double tolerance = 1e-8;  ///< of the result by what summaries miss: m, rad, units of coefficients
@@ -141,16 +141,16 @@ class SummarisedSessions {
   void count_known();
   void count_all();
   void take_anew(Member& member, SecondDerivatives kind);
-  void take_anew(Member& member, const DenseCholesky& factor);
+  void take_anew(Member& member, const linalg::DenseCholesky& factor);
   [[nodiscard]] double effect_of(const Member& member, const Eigen::VectorXd& missed,
-                                 const DenseCholesky& factor) const;
-  void try_out(Member& member, const DenseCholesky& factor);
+                                 const linalg::DenseCholesky& factor) const;
+  void try_out(Member& member, const linalg::DenseCholesky& factor);
   [[nodiscard]] std::vector<Eigen::Index> apart() const;
-  [[nodiscard]] DenseCholesky factor() const;
+  [[nodiscard]] linalg::DenseCholesky factor() const;
   [[nodiscard]] Eigen::MatrixXd covariance() const;
-  [[nodiscard]] DenseCholesky safe_factor();
-  [[nodiscard]] Eigen::VectorXd step(const DenseCholesky& factor) const;
-  [[nodiscard]] std::vector<double> effects_of_moves(const DenseCholesky& factor) const;
+  [[nodiscard]] linalg::DenseCholesky safe_factor();
+  [[nodiscard]] Eigen::VectorXd step(const linalg::DenseCholesky& factor) const;
+  [[nodiscard]] std::vector<double> effects_of_moves(const linalg::DenseCholesky& factor) const;
   [[nodiscard]] std::vector<std::size_t> worth_taking_anew(const std::vector<double>& effects,
                                                            double safety) const;
   [[nodiscard]] bool take_wholly();
@@ -161,4 +161,4 @@ class SummarisedSessions {
   Sum sum_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <random>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 constexpr double kFresh = 1e-6;  // m, rad: a new session's move from which it is relinearised
@@ -46,7 +46,7 @@ void SummarisedSessions::take_anew(Member& member, SecondDerivatives kind) {
 }
 
 /// Takes it anew, and learns from what its summary has missed.
-void SummarisedSessions::take_anew(Member& member, const DenseCholesky& factor) {
+void SummarisedSessions::take_anew(Member& member, const linalg::DenseCholesky& factor) {
   constexpr double kTold = 1e-3;  // of the trial's move: below it all is rounding
   const Eigen::VectorXd u = local(member);
   const double moved = size_of(u - member.summary.quadratic().at, member.summary.quadratic());
@@ -63,7 +63,7 @@ void SummarisedSessions::take_anew(Member& member, const DenseCholesky& factor) 
 
 /// The largest change of x by so much more of the session's gradient.
 double SummarisedSessions::effect_of(const Member& member, const Eigen::VectorXd& missed,
-                                     const DenseCholesky& factor) const {
+                                     const linalg::DenseCholesky& factor) const {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(sum_.x.size());
   gradient(member.at) = missed;
   for (const Eigen::Index at : sum_.held) gradient[at] = 0.0;
@@ -71,7 +71,7 @@ double SummarisedSessions::effect_of(const Member& member, const Eigen::VectorXd
 }
 
 /// What the summary misses of the gradient where x moves by about what it is uncertain.
-void SummarisedSessions::try_out(Member& member, const DenseCholesky& factor) {
+void SummarisedSessions::try_out(Member& member, const linalg::DenseCholesky& factor) {
   std::mt19937_64 random(kSeed);
   std::normal_distribution<double> normal;
   Eigen::VectorXd draw(sum_.x.size());
@@ -88,7 +88,8 @@ void SummarisedSessions::try_out(Member& member, const DenseCholesky& factor) {
 /// By how much x would change at most, by what each session's summary is thought to miss there. No
 /// session counts as missing less than the mean does of a move as large: its trial may have gone in
 /// a direction that suits it.
-std::vector<double> SummarisedSessions::effects_of_moves(const DenseCholesky& factor) const {
+std::vector<double> SummarisedSessions::effects_of_moves(
+    const linalg::DenseCholesky& factor) const {
   Eigen::MatrixXd missed =
       Eigen::MatrixXd::Zero(sum_.x.size(), static_cast<Eigen::Index>(sessions_.size()));
   for (std::size_t s = 0; s < sessions_.size(); ++s) {
@@ -128,7 +129,7 @@ std::vector<std::size_t> SummarisedSessions::worth_taking_anew(const std::vector
 
 /// The sum's factor. Far from its minimum whole second derivatives may have none: then those of
 /// Gauss and Newton stand in, first the new session's, then all.
-DenseCholesky SummarisedSessions::safe_factor() {
+linalg::DenseCholesky SummarisedSessions::safe_factor() {
   for (const bool all : {false, true}) {
     try {
       return factor();
@@ -164,7 +165,7 @@ void SummarisedSessions::settle() {
       thought = 0.0;
       continue;
     }
-    const DenseCholesky H = safe_factor();
+    const linalg::DenseCholesky H = safe_factor();
     if (take_wholly()) {
       thought = 0.0;
       continue;
@@ -200,4 +201,4 @@ double SummarisedSessions::exact_error() {
   return largest(factor().solve(gradient));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

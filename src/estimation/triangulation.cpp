@@ -10,7 +10,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// Found by robust_place through the reading's namespace.
 static ReadingPull pull_of(const DirectionReading& one, const Vector2& place) {
@@ -42,10 +42,10 @@ std::optional<Triangulation> triangulate(const std::vector<DirectionReading>& al
   constexpr std::size_t kCrossings = 12;
   constexpr double kWellKnown = 0.1;  // of the distance: standard deviation in the worst direction
   if (all.size() < kFewest) return std::nullopt;
-  const std::vector<DirectionReading> readings = thinned(all, kMostReadings);
+  const std::vector<DirectionReading> readings = statistics::thinned(all, kMostReadings);
   std::vector<Vector2> starts;
-  for (const DirectionReading& one : thinned(readings, kCrossings)) {
-    for (const DirectionReading& other : thinned(readings, kCrossings)) {
+  for (const DirectionReading& one : statistics::thinned(readings, kCrossings)) {
+    for (const DirectionReading& other : statistics::thinned(readings, kCrossings)) {
       if (const std::optional<Vector2> at = crossing(one, other)) starts.push_back(*at);
     }
   }
@@ -74,4 +74,4 @@ std::optional<Triangulation> triangulate(const std::vector<DirectionReading>& al
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -16,7 +16,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 struct DirectionReading {
   Vector2 from = Vector2::Zero();  ///< m
@@ -33,4 +33,4 @@ struct Triangulation {
 [[nodiscard]] std::optional<Triangulation> triangulate(
     const std::vector<DirectionReading>& readings);
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -19,6 +19,8 @@
 #include <stdexcept>
 
 namespace trussmap {
+using namespace experiment;
+
 namespace {
 
 using Errors = MapErrors;
@@ -157,7 +159,8 @@ class SeedRun {
         route_errors(mesh, by_mesh([this](int k) { return averages_.route(k).mean_vector(); }));
     errors["dead_reckoning"] = errors_of(averages_);
     std::map<std::string, LandmarkGraph> maps;
-    maps["adjustment"] = graph_.empty() ? adjust_linear(averages_).map : graph_.adjusted(averages_);
+    maps["adjustment"] =
+        graph_.empty() ? map::adjust_linear(averages_).map : graph_.adjusted(averages_);
     for (const auto& [method, builder] : builders_) {
       if (method != kFirstSight) maps[method] = builder.map();
     }
@@ -251,7 +254,7 @@ std::vector<SeedErrors> run_tour_seeds(const TourOptions& options, const std::ve
   std::vector<SeedErrors> results(seeds.size());
   std::mutex reporting;
   int done = 0;
-  parallel_for(seeds.size(), [&](std::size_t k) {
+  parallel::parallel_for(seeds.size(), [&](std::size_t k) {
     const auto seed = static_cast<std::uint64_t>(seeds[k]);
     results[k] = SeedRun(options, options.first_seed + seed, seeds[k] == 0).run();
     const std::scoped_lock lock(reporting);

@@ -13,7 +13,7 @@
 #include <optional>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::experiment {
 namespace {
 
 constexpr double kStanding = 1e-4;  // m, how exactly a pose is a landmark's in the graph
@@ -27,15 +27,15 @@ TourRobot::TourRobot(const TourOptions& options, std::uint64_t seed)
 
 TourLeg TourRobot::drive(const Vector2& displacement) {
   if (options_.wheels) return drive_wheels(displacement);
-  const MeasuredRoute measured =
-      measure_route(displacement, {options_.odometry_error, options_.compass_error}, error_random_);
+  const simulation::MeasuredRoute measured = simulation::measure_route(
+      displacement, {options_.odometry_error, options_.compass_error}, error_random_);
   TourLeg leg;
   leg.in_map = {measured.displacement, measured.covariance};
   return leg;
 }
 
 HeadingEstimate TourRobot::read(double heading) {
-  const double sd = sd_of_mean_error(options_.compass_error);
+  const double sd = simulation::sd_of_mean_error(options_.compass_error);
   std::normal_distribution<double> error(0.0, sd);
   return {wrap_angle(heading + error(compass_random_)), sd * sd};
 }
@@ -60,15 +60,15 @@ TourLeg TourRobot::drive_wheels(const Vector2& displacement) {
   if (reads) {
     leg.reading = read(before);
     believed_ =
-        with_reading(knows_heading_ ? std::optional(believed_) : std::nullopt, *leg.reading);
+        map::with_reading(knows_heading_ ? std::optional(believed_) : std::nullopt, *leg.reading);
     knows_heading_ = true;
   }
   leg.motion.emplace();
   for (const DrivenRow& row : rows) {
     leg.motion = then(*leg.motion, arc_motion({row.left, row.right}, wheels.wheelbase, noise));
   }
-  leg.in_map = in_map_axes(believed_, leg.motion->displacement.position(),
-                           leg.motion->covariance.topLeftCorner<2, 2>());
+  leg.in_map = map::in_map_axes(believed_, leg.motion->displacement.position(),
+                                leg.motion->covariance.topLeftCorner<2, 2>());
   believed_.heading += leg.motion->displacement.heading;
   believed_.variance += leg.motion->covariance(2, 2);
   return leg;
@@ -81,7 +81,7 @@ Traversal TourRobot::with_readings(const std::vector<DrivenRow>& rows, double he
   robot.wheelbase = wheels.wheelbase;
   Noise noise;
   noise.left = noise.right = wheels.noise;
-  noise.compass = sd_of_mean_error(options_.compass_error);
+  noise.compass = simulation::sd_of_mean_error(options_.compass_error);
   Recording recording;
   Drive& drive = recording.drive;
   const double whole = heading_ - heading;
@@ -171,4 +171,4 @@ LandmarkGraph TourGraph::adjusted(const LandmarkGraph& map) const {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::experiment

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::experiment {
 
 /// One traversal as measured.
 struct TourLeg {
@@ -68,4 +68,4 @@ class TourGraph {
   int here_ = -1;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::experiment

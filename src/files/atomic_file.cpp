@@ -18,6 +18,8 @@
 #include <unistd.h>
 
 namespace trussmap {
+using namespace files;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -9,7 +9,7 @@
 #include <string>
 #include <system_error>
 
-namespace trussmap {
+namespace trussmap::files {
 
 /// Whether there is something of this name. Throws InputError where nobody can tell: what may not
 /// be looked at is not missing.
@@ -38,4 +38,4 @@ inline void require_file(const std::filesystem::path& path) {
   return {name, 0, "cannot be opened: " + reason + ", expected a readable file"};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::files

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace trussmap {
+namespace trussmap::files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -153,4 +153,4 @@ void remove_leftovers(const fs::path& folder) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::files

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <sys/types.h>
 
-namespace trussmap {
+namespace trussmap::files {
 
 /// An open file or folder, closed in the end.
 class Descriptor {
@@ -57,4 +57,4 @@ class Descriptor {
 /// with the files in them (never with folders in them). What cannot be removed stays.
 void remove_leftovers(const std::filesystem::path& folder);
 
-}  // namespace trussmap
+}  // namespace trussmap::files

@@ -14,7 +14,7 @@
 #include <sys/xattr.h>
 #include <unistd.h>
 
-namespace trussmap {
+namespace trussmap::files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -240,4 +240,4 @@ void WholeFolder::finish() {
   ::rmdir(stage_.c_str());
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::files

@@ -20,7 +20,7 @@
 #include <sys/stat.h>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::files {
 
 enum class Staged {
   yes,
@@ -87,4 +87,4 @@ class WholeFolder {
 /// Where a folder really is: links followed, no slash at the end. Throws InputError for "".
 [[nodiscard]] std::filesystem::path place_of_folder(const std::filesystem::path& folder);
 
-}  // namespace trussmap
+}  // namespace trussmap::files

@@ -12,7 +12,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 constexpr int kPasses = 2;
@@ -24,7 +24,7 @@ ClearedRecording as_recorded(const DrivenRecording& recording) {
   return result;
 }
 
-void clear_drive(const DrivenRecording& recorded, const std::vector<DrivePattern>& effects,
+void clear_drive(const DrivenRecording& recorded, const std::vector<effects::DrivePattern>& effects,
                  const Robot& robot, ClearedRecording& result) {
   const MotionRows& drive = recorded.drive;
   MotionRows& clear = result.recording.drive;
@@ -33,8 +33,8 @@ void clear_drive(const DrivenRecording& recorded, const std::vector<DrivePattern
   clear.pair = drive.pair;
   result.slip.assign(drive.rows(), 0.0);
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const DrivePattern more = effects.empty() ? DrivePattern() : effects[row];
-    add_motion(clear, row, {more.advance, 0.0, more.turn}, robot);
+    const effects::DrivePattern more = effects.empty() ? effects::DrivePattern() : effects[row];
+    drive::add_motion(clear, row, {more.advance, 0.0, more.turn}, robot);
     result.slip[row] = more.slip;
     if (!drive.gyro.empty()) clear.gyro[row].excess = drive.gyro[row].excess + more.excess;
     if (drive.has_compass()) clear.heading[row] = drive.heading[row] - more.compass;
@@ -44,13 +44,14 @@ void clear_drive(const DrivenRecording& recorded, const std::vector<DrivePattern
   if (!slips) result.slip.clear();
 }
 
-void clear_sightings(const DrivenRecording& recorded, const EffectParameters& border,
+void clear_sightings(const DrivenRecording& recorded, const estimation::EffectParameters& border,
                      const Eigen::VectorXd& offsets, int session, const Robot& robot,
                      ClearedRecording& result) {
-  constexpr RecordingStream kStream = RecordingStream::sightings;
-  const ViewPattern mounted = mounted_view(robot.mounted, kStream);
+  constexpr estimation::RecordingStream kStream = estimation::RecordingStream::sightings;
+  const effects::ViewPattern mounted = estimation::mounted_view(robot.mounted, kStream);
   for (std::size_t k = 0; k < recorded.sightings.size(); ++k) {
-    const ViewPattern view = view_of(border, offsets, kStream, idx(session), k, mounted);
+    const effects::ViewPattern view =
+        estimation::view_of(border, offsets, kStream, idx(session), k, mounted);
     const Sighting& seen = recorded.sightings[k];
     Sighting& clear = result.recording.sightings[k];
     result.sensor[k] = {view.ahead, view.left};
@@ -62,11 +63,11 @@ void clear_sightings(const DrivenRecording& recorded, const EffectParameters& bo
   }
 }
 
-void clear(const std::vector<DrivenRecording>& timed, const EffectParameters& border,
+void clear(const std::vector<DrivenRecording>& timed, const estimation::EffectParameters& border,
            const Eigen::VectorXd& offsets, const Robot& robot,
            std::vector<ClearedRecording>& result) {
   for (std::size_t s = 0; s < timed.size(); ++s) {
-    clear_drive(timed[s], summed_patterns_of(border, offsets, s), robot, result[s]);
+    clear_drive(timed[s], estimation::summed_patterns_of(border, offsets, s), robot, result[s]);
     clear_sightings(timed[s], border, offsets, static_cast<int>(s), robot, result[s]);
   }
 }
@@ -98,8 +99,8 @@ std::vector<ClearedRecording> cleared(const std::vector<DrivenRecording>& record
                                       const Model& model) {
   std::vector<ClearedRecording> result;
   if (model.effects.empty()) {
-    const EffectParameters none;
-    for (const DrivenRecording& one : with_gyro(recorded, model.robot, model.noise)) {
+    const estimation::EffectParameters none;
+    for (const DrivenRecording& one : odometry::with_gyro(recorded, model.robot, model.noise)) {
       result.push_back(as_recorded(one));
       const int session = static_cast<int>(result.size()) - 1;
       clear_sightings(one, none, {}, session, model.robot, result.back());
@@ -112,10 +113,10 @@ std::vector<ClearedRecording> cleared(const std::vector<DrivenRecording>& record
   std::vector<SessionPath> paths;
   for (int pass = 0; pass < kPasses; ++pass) {
     if (pass > 0) paths = reckoned_paths(result, model);
-    if (pass == 0 || steers(effects)) {  // along the path
-      timed = retimed(
-          with_gyro(steered(recorded, effects, model.robot, paths), model.robot, model.noise),
-          effects, model.robot);
+    if (pass == 0 || effects::steers(effects)) {  // along the path
+      timed = retimed(odometry::with_gyro(steered(recorded, effects, model.robot, paths),
+                                          model.robot, model.noise),
+                      effects, model.robot);
       result.clear();
       for (const DrivenRecording& recording : timed) result.push_back(as_recorded(recording));
     }
@@ -147,4 +148,4 @@ std::vector<ClearedRecording> cleared(const FitState& fit, const Eigen::VectorXd
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -22,7 +22,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 struct ClearedRecording {
   DrivenRecording recording;    ///< truth and survey as they were
@@ -44,4 +44,4 @@ struct ClearedRecording {
 [[nodiscard]] std::vector<ClearedRecording> cleared(const FitState& fit,
                                                     const Eigen::VectorXd& offsets);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 using Instant = ShapeContext::Instant;
@@ -37,22 +37,22 @@ std::vector<Part> parts_of(const Effect& effect, std::size_t sessions) {
   return parts;
 }
 
-Instant instant_of(RecordingStream stream) {
-  return stream == RecordingStream::truth   ? Instant::truth
-         : stream == RecordingStream::fixes ? Instant::fix
-         : stream == RecordingStream::loops ? Instant::loop
-                                            : Instant::sighting;
+Instant instant_of(estimation::RecordingStream stream) {
+  return stream == estimation::RecordingStream::truth   ? Instant::truth
+         : stream == estimation::RecordingStream::fixes ? Instant::fix
+         : stream == estimation::RecordingStream::loops ? Instant::loop
+                                                        : Instant::sighting;
 }
 
 /// Where a channel's shapes are asked for.
 std::vector<Instant> instants_of(Channel channel) {
-  if (acts_on(channel) == ActsOn::readings) return {Instant::end};
-  if (acts_on(channel) != ActsOn::views) return {Instant::middle};
+  if (effects::acts_on(channel) == effects::ActsOn::readings) return {Instant::end};
+  if (effects::acts_on(channel) != effects::ActsOn::views) return {Instant::middle};
   std::vector<Instant> instants;
-  if (acts_on_sightings(channel)) instants.push_back(Instant::sighting);
-  if (acts_on_truth(channel)) instants.push_back(Instant::truth);
-  if (acts_on_fixes(channel)) instants.push_back(Instant::fix);
-  if (acts_on_loops(channel)) instants.push_back(Instant::loop);
+  if (effects::acts_on_sightings(channel)) instants.push_back(Instant::sighting);
+  if (effects::acts_on_truth(channel)) instants.push_back(Instant::truth);
+  if (effects::acts_on_fixes(channel)) instants.push_back(Instant::fix);
+  if (effects::acts_on_loops(channel)) instants.push_back(Instant::loop);
   return instants;
 }
 
@@ -62,50 +62,55 @@ bool is_of_rows(Instant at) {
 
 }  // namespace
 
-ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem& problem,
-                             const EffectParameters& border, const Eigen::VectorXd& offsets,
-                             const RecordingState& state, const std::vector<double>& weights)
+ColumnBuilder::ColumnBuilder(const ShapeContext& context,
+                             const estimation::RecordingProblem& problem,
+                             const estimation::EffectParameters& border,
+                             const Eigen::VectorXd& offsets,
+                             const estimation::RecordingState& state,
+                             const std::vector<double>& weights)
     : context_(context), segment_rows_(std::make_shared<std::vector<Row>>()) {
   std::size_t count = 0;
-  for (const Measurement& one : problem.measurements) {
-    if (is_driven(one)) count += problem.segments[one.source].size();
+  for (const estimation::Measurement& one : problem.measurements) {
+    if (estimation::is_driven(one)) count += problem.segments[one.source].size();
   }
   segment_rows_->reserve(count);
   struct Driven {
-    const std::vector<SegmentRow>* rows;
+    const std::vector<estimation::SegmentRow>* rows;
     std::size_t session;
     std::size_t first;
   };
   std::vector<Driven> driven;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
-    const Measurement& one = problem.measurements[k];
-    const Matrix4 W = std::sqrt(weights[k] * tail_information(one.tails, one.rows)) * one.whitener;
-    if (is_segment(one)) {
-      const std::vector<SegmentRow>& rows = problem.segments[one.source];
+    const estimation::Measurement& one = problem.measurements[k];
+    const estimation::Matrix4 W =
+        std::sqrt(weights[k] * estimation::tail_information(one.tails, one.rows)) * one.whitener;
+    if (estimation::is_segment(one)) {
+      const std::vector<estimation::SegmentRow>& rows = problem.segments[one.source];
       const std::size_t first = segment_rows_->size();
       segments_.push_back(
           {rows_, one.rows, idx(one.session), first, first + rows.size(), 0, 0, false, -W});
       segment_rows_->resize(first + rows.size());
       driven.push_back({&rows, idx(one.session), first});
-    } else if (is_driven(one)) {
+    } else if (estimation::is_driven(one)) {
       add_gyro(problem, one, W);
-    } else if (one.session >= 0 && !is_tie(one)) {
-      const ViewPattern view = view_of(border, offsets, one);
-      const MeasurementRows rows = measurement_rows(problem, one, state, one.value, view);
+    } else if (one.session >= 0 && !estimation::is_tie(one)) {
+      const effects::ViewPattern view = estimation::view_of(border, offsets, one);
+      const estimation::MeasurementRows rows =
+          estimation::measurement_rows(problem, one, state, one.value, view);
       views_.push_back({rows_, one.rows, idx(one.session), one.source,
                         instant_of(one.kind->facts().stream), W * rows.by_view});
     }
     rows_ += one.rows;
   }
   rows_ += static_cast<int>(problem.noise_states.size());
-  const std::vector<std::vector<DrivePattern>> effects =
-      summed_patterns(border, offsets, context.recordings().size());
-  parallel_for(driven.size(), [&](std::size_t k) {
+  const std::vector<std::vector<effects::DrivePattern>> effects =
+      estimation::summed_patterns(border, offsets, context.recordings().size());
+  parallel::parallel_for(driven.size(), [&](std::size_t k) {
     const Driven& one = driven[k];
-    const std::vector<Matrix4> influences =
-        row_influences(with_effects(*one.rows, effects[one.session]));
+    const std::vector<estimation::Matrix4> influences =
+        estimation::row_influences(estimation::with_effects(*one.rows, effects[one.session]));
     for (std::size_t row = 0; row < influences.size(); ++row) {
-      const Matrix4& I = influences[row];
+      const estimation::Matrix4& I = influences[row];
       (*segment_rows_)[one.first + row] = {(*one.rows)[row].row,
                                            I.block<2, 1>(0, 0),
                                            I.block<2, 1>(0, 2),
@@ -117,13 +122,13 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
   take_training_segments();
 }
 
-void ColumnBuilder::add_gyro(const RecordingProblem& problem, const Measurement& one,
-                             const Matrix4& W) {
-  const std::vector<SegmentRow>& rows = problem.segments[one.source];
-  const std::vector<Vector4>& weights = problem.gyro_weights[one.source];
+void ColumnBuilder::add_gyro(const estimation::RecordingProblem& problem,
+                             const estimation::Measurement& one, const estimation::Matrix4& W) {
+  const std::vector<estimation::SegmentRow>& rows = problem.segments[one.source];
+  const std::vector<estimation::Vector4>& weights = problem.gyro_weights[one.source];
   Segment segment{rows_, one.rows, idx(one.session), segment_rows_->size(), 0, 0, 0, true, -W};
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    const Vector4 excess = rows[row].part * weights[row];
+    const estimation::Vector4 excess = rows[row].part * weights[row];
     segment_rows_->push_back({rows[row].row, excess.head<2>(), excess.tail<2>()});
   }
   segment.row_end = segment_rows_->size();
@@ -221,7 +226,7 @@ void ColumnBuilder::evaluate(const std::map<Evaluation, const Effect*>& wanted) 
   }
   std::vector<Values> values(missing.size());
   std::vector<std::vector<double>> largest(missing.size());
-  parallel_for(missing.size(), [&](std::size_t k) {
+  parallel::parallel_for(missing.size(), [&](std::size_t k) {
     const auto& [one, effect] = missing[k];
     try {
       values[k] = evaluated(one);
@@ -251,11 +256,11 @@ void ColumnBuilder::work_out(const Segment& segment,
     for (const auto& [channel, columns] : wanted) std::fill_n(columns + first, 4, 0.0);
     for (std::size_t at = training_segments_[k].begin; at < training_segments_[k].end; ++at) {
       const Row& row = (*segment_rows_)[at];
-      const RowMotion motion = context_.motion(segment.session, row.row);
+      const drive::RowMotion motion = context_.motion(segment.session, row.row);
       for (const auto& [channel, columns] : wanted) {
-        const DrivePattern unit = drive_pattern(channel, 1.0, motion);
-        Eigen::Map<Vector4>(columns + first) +=
-            segment.gyro ? Vector4(unit.excess * row.excess()) : row.times(unit);
+        const effects::DrivePattern unit = effects::drive_pattern(channel, 1.0, motion);
+        Eigen::Map<estimation::Vector4>(columns + first) +=
+            segment.gyro ? estimation::Vector4(unit.excess * row.excess()) : row.times(unit);
       }
     }
   }
@@ -287,7 +292,7 @@ void ColumnBuilder::add_drives(std::span<const Job> jobs) {
   std::vector<Summed> sums;
   for (const Job& job : jobs) {
     const Channel channel = job.effect.channel;
-    if (acts_on(channel) == ActsOn::views) continue;
+    if (effects::acts_on(channel) == effects::ActsOn::views) continue;
     const auto found = std::find(channels.begin(), channels.end(), channel);
     const auto place = static_cast<std::size_t>(found - channels.begin());
     if (found == channels.end()) channels.push_back(channel);
@@ -302,7 +307,7 @@ void ColumnBuilder::add_drives(std::span<const Job> jobs) {
     missing[c] = bases[c]->cols() == 0;
     bases[c]->resize(4, static_cast<Eigen::Index>(training_segments_.size()));
   }
-  parallel_ranges(segments_.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
+  parallel::parallel_ranges(segments_.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
     std::vector<double> scratch;
     std::vector<double*> units(channels.size());
     std::vector<std::pair<Channel, double*>> wanted;
@@ -320,9 +325,9 @@ void ColumnBuilder::add_drives(std::span<const Job> jobs) {
         if (one.job.session >= 0 && segment.session != idx(one.job.session)) continue;
         const std::vector<double>& here = one.f[segment.session];
         const double* unit = units[one.channel];
-        Vector4 sum = Vector4::Zero();
+        estimation::Vector4 sum = estimation::Vector4::Zero();
         for (std::size_t k = segment.begin; k < segment.end; ++k, unit += 4) {
-          sum += here[training_segments_[k].place] * Eigen::Map<const Vector4>(unit);
+          sum += here[training_segments_[k].place] * Eigen::Map<const estimation::Vector4>(unit);
         }
         one.job.columns.col(one.job.column).segment(segment.first_row, segment.rows) =
             (segment.W * sum).head(segment.rows);
@@ -338,10 +343,10 @@ void ColumnBuilder::add_views(const Job& job, Eigen::Ref<Eigen::VectorXd> column
       if (view.at != at) continue;
       if (job.session >= 0 && view.session != idx(job.session)) continue;
       const RowVariables& variables = context_.variables(view.session, at);
-      const ViewPattern unit =
-          view_pattern(job.effect.channel, f[view.session][view.source],
-                       variables.at("speed")[view.source], variables.at("turn_rate")[view.source]);
-      const Vector4 rows = view.influence * unit.vector();
+      const effects::ViewPattern unit = effects::view_pattern(
+          job.effect.channel, f[view.session][view.source], variables.at("speed")[view.source],
+          variables.at("turn_rate")[view.source]);
+      const estimation::Vector4 rows = view.influence * unit.vector();
       for (int row = 0; row < view.rows; ++row) column[view.first_row + row] = rows[row];
     }
   }
@@ -361,9 +366,9 @@ std::vector<Eigen::MatrixXd> ColumnBuilder::columns(std::span<const Effect> effe
   for (std::size_t begin = 0; begin < jobs.size();) {
     const std::size_t end = make_ready(jobs, begin);
     add_drives(std::span(jobs).subspan(begin, end - begin));
-    parallel_for(end - begin, [&](std::size_t k) {
+    parallel::parallel_for(end - begin, [&](std::size_t k) {
       const Job& job = jobs[begin + k];
-      if (acts_on(job.effect.channel) != ActsOn::views) return;
+      if (effects::acts_on(job.effect.channel) != effects::ActsOn::views) return;
       add_views(job, job.columns.col(job.column));
     });
     begin = end;
@@ -393,4 +398,4 @@ std::vector<double> ColumnBuilder::largest(const Effect& effect) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -25,7 +25,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 /// How much of a row is in each of a few columns; a share of 0: none.
 struct RowShares {
@@ -37,9 +37,9 @@ class ColumnBuilder {
  public:
   /// Keeps references to context, problem and border. `weights` of the measurements (information);
   /// `offsets` of the border's coefficients from their references.
-  ColumnBuilder(const ShapeContext& context, const RecordingProblem& problem,
-                const EffectParameters& border, const Eigen::VectorXd& offsets,
-                const RecordingState& state, const std::vector<double>& weights);
+  ColumnBuilder(const ShapeContext& context, const estimation::RecordingProblem& problem,
+                const estimation::EffectParameters& border, const Eigen::VectorXd& offsets,
+                const estimation::RecordingState& state, const std::vector<double>& weights);
 
   /// The same for a quick look: so many seconds of driving count as one row, with the variables of
   /// its middle. Shares what it can with this one.
@@ -53,9 +53,9 @@ class ColumnBuilder {
   }
   /// The column of a channel that acts on drives, its shape 1, cut into `count`: by the shares that
   /// each session's rows have in them. Of every row by itself (not coarsened).
-  [[nodiscard]] SparseMatrix cut_column(Channel channel,
-                                        const std::vector<std::vector<RowShares>>& shares,
-                                        int count) const;
+  [[nodiscard]] linalg::SparseMatrix cut_column(Channel channel,
+                                                const std::vector<std::vector<RowShares>>& shares,
+                                                int count) const;
   /// |f| at most, per coefficient.
   [[nodiscard]] std::vector<double> largest(const Effect& effect);
 
@@ -74,12 +74,12 @@ class ColumnBuilder {
     double reading_by_turn = 0.0;
     double reading = 0.0;
 
-    [[nodiscard]] Vector4 times(const DrivePattern& unit) const {
+    [[nodiscard]] estimation::Vector4 times(const effects::DrivePattern& unit) const {
       return {along.x() * unit.advance - along.y() * unit.slip + by_turn.x() * unit.turn,
               along.y() * unit.advance + along.x() * unit.slip + by_turn.y() * unit.turn,
               part * unit.turn, reading_by_turn * unit.turn + reading * unit.compass};
     }
-    [[nodiscard]] Vector4 excess() const {
+    [[nodiscard]] estimation::Vector4 excess() const {
       return {along.x(), along.y(), by_turn.x(), by_turn.y()};
     }
   };
@@ -98,7 +98,7 @@ class ColumnBuilder {
     std::size_t begin = 0;  ///< of training_segments_
     std::size_t end = 0;
     bool gyro = false;  ///< a gyro's numbers
-    Matrix4 W = Matrix4::Zero();
+    estimation::Matrix4 W = estimation::Matrix4::Zero();
   };
   struct View {
     Eigen::Index first_row = 0;
@@ -106,7 +106,7 @@ class ColumnBuilder {
     std::size_t session = 0;
     std::size_t source = 0;
     ShapeContext::Instant at = ShapeContext::Instant::sighting;
-    ByView influence = ByView::Zero();  ///< whitened
+    effects::ByView influence = effects::ByView::Zero();  ///< whitened
   };
   using Values = std::vector<std::vector<double>>;  ///< per session
   /// A shape at the rows, or events, where it is asked for.
@@ -120,7 +120,8 @@ class ColumnBuilder {
     Eigen::MatrixXd& columns;
   };
 
-  void add_gyro(const RecordingProblem& problem, const Measurement& one, const Matrix4& W);
+  void add_gyro(const estimation::RecordingProblem& problem, const estimation::Measurement& one,
+                const estimation::Matrix4& W);
   /// Of rows joint_ long at most; no longer than a segment.
   void take_training_segments();
   void take_training_segments(Segment& segment);
@@ -154,4 +155,4 @@ class ColumnBuilder {
   std::map<Evaluation, std::vector<double>> largest_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -6,9 +6,10 @@
 
 namespace trussmap {
 
-class __attribute__((visibility("hidden"))) CorrectedOdometry::State : public OnlineOdometry {
+class __attribute__((visibility("hidden"))) CorrectedOdometry::State
+    : public fitting::OnlineOdometry {
  public:
-  using OnlineOdometry::OnlineOdometry;
+  using fitting::OnlineOdometry::OnlineOdometry;
 };
 
 CorrectedOdometry::CorrectedOdometry(const Model& model, const OdometryInputs& inputs)

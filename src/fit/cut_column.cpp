@@ -9,15 +9,15 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 /// What a segment has of each column that it has anything of.
 struct SegmentSums {
   std::vector<int> columns;
-  std::vector<Vector4> sums;
+  std::vector<estimation::Vector4> sums;
 
-  void add(int column, const Vector4& value) {
+  void add(int column, const estimation::Vector4& value) {
     // Rows follow each other: their columns are the latest.
     const auto found = std::find(columns.rbegin(), columns.rend(), column);
     if (found == columns.rend()) {
@@ -31,9 +31,9 @@ struct SegmentSums {
 
 }  // namespace
 
-SparseMatrix ColumnBuilder::cut_column(Channel channel,
-                                       const std::vector<std::vector<RowShares>>& shares,
-                                       int count) const {
+linalg::SparseMatrix ColumnBuilder::cut_column(Channel channel,
+                                               const std::vector<std::vector<RowShares>>& shares,
+                                               int count) const {
   assert(joint_ == 0.0 && "seconds at a time have no shares of their own");
   std::vector<Eigen::Triplet<double, int>> entries;
   std::vector<double> units;
@@ -43,22 +43,22 @@ SparseMatrix ColumnBuilder::cut_column(Channel channel,
     work_out(segment, std::span(&wanted, 1));
     SegmentSums sums;
     for (std::size_t k = segment.begin; k < segment.end; ++k) {
-      const Eigen::Map<const Vector4> unit(units.data() + 4 * (k - segment.begin));
+      const Eigen::Map<const estimation::Vector4> unit(units.data() + 4 * (k - segment.begin));
       const RowShares& row = shares[segment.session][training_segments_[k].place];
       for (std::size_t c = 0; c < row.column.size(); ++c) {
         if (row.share[c] != 0.0) sums.add(row.column[c], row.share[c] * unit);
       }
     }
     for (std::size_t c = 0; c < sums.columns.size(); ++c) {
-      const Vector4 rows = segment.W * sums.sums[c];
+      const estimation::Vector4 rows = segment.W * sums.sums[c];
       for (int row = 0; row < segment.rows; ++row) {
         entries.emplace_back(static_cast<int>(segment.first_row) + row, sums.columns[c], rows[row]);
       }
     }
   }
-  SparseMatrix result(rows_, count);
+  linalg::SparseMatrix result(rows_, count);
   result.setFromTriplets(entries.begin(), entries.end());
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -13,19 +13,19 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 using Instant = ShapeContext::Instant;
 
-std::vector<ViewPattern> views(Channel channel, const std::vector<double>& f,
-                               const RowVariables& variables) {
+std::vector<effects::ViewPattern> views(Channel channel, const std::vector<double>& f,
+                                        const RowVariables& variables) {
   const std::vector<double>& speed = variables.at("speed");
   const std::vector<double>& turn_rate = variables.at("turn_rate");
-  std::vector<ViewPattern> result;
+  std::vector<effects::ViewPattern> result;
   result.reserve(f.size());
   for (std::size_t k = 0; k < f.size(); ++k) {
-    result.push_back(view_pattern(channel, f[k], speed[k], turn_rate[k]));
+    result.push_back(effects::view_pattern(channel, f[k], speed[k], turn_rate[k]));
   }
   return result;
 }
@@ -48,12 +48,12 @@ RowVariables event_variables(const DrivenRecording& recording, const Robot& robo
     instants.push_back(event.t);
     poses.push_back(pose_at(recording.drive, path, event.t));
   }
-  return instant_variables(recording.drive, robot, instants, poses, session);
+  return drive::instant_variables(recording.drive, robot, instants, poses, session);
 }
 
 }  // namespace
 
-void add_noise(const Vector2& missing, double excess, RowMotion& row) {
+void add_noise(const Vector2& missing, double excess, drive::RowMotion& row) {
   Vector2 lacks = missing;
   if (row.gyro_reads) {
     // The noise of an excess is the wheels' in part, and the gyro's for the rest.
@@ -67,8 +67,8 @@ ShapeContext::ShapeContext(const std::vector<DrivenRecording>& recordings, const
                            const std::vector<SessionPath>& paths)
     : recordings_(recordings), robot_(robot), paths_(paths) {}
 
-RowMotion ShapeContext::motion(std::size_t session, std::size_t row) const {
-  RowMotion motion = row_motion(recordings_[session].drive, row, robot_);
+drive::RowMotion ShapeContext::motion(std::size_t session, std::size_t row) const {
+  drive::RowMotion motion = drive::row_motion(recordings_[session].drive, row, robot_);
   const SessionPath& path = paths_[session];
   if (path.missing.empty()) return motion;
   add_noise(path.missing[row], path.excess.empty() ? 0.0 : path.excess[row], motion);
@@ -85,9 +85,9 @@ const RowVariables& ShapeContext::variables(std::size_t session, Instant at) con
   const auto made = [&]() -> RowVariables {
     switch (at) {
       case Instant::middle:
-        return row_variables(one.drive, robot_, path.start, path.ends, number);
+        return drive::row_variables(one.drive, robot_, path.start, path.ends, number);
       case Instant::end:
-        return instant_variables(one.drive, robot_, one.drive.t, path.ends, number);
+        return drive::instant_variables(one.drive, robot_, one.drive.t, path.ends, number);
       case Instant::sighting:
         return event_variables(one, robot_, path, one.sightings, number);
       case Instant::truth:
@@ -118,7 +118,7 @@ std::vector<std::vector<double>> ShapeContext::values(const Shape& shape, Instan
 namespace {
 
 struct Column {
-  EffectPattern pattern;
+  estimation::EffectPattern pattern;
   double largest = 0.0;
 };
 
@@ -143,15 +143,16 @@ RowVariables variables_along(const MotionRows& drive, const Robot& robot,
                              const std::vector<SessionPath>& paths, std::size_t session) {
   const bool led = session < paths.size() && paths[session].ends.size() == drive.rows();
   const int number = static_cast<int>(session);
-  return led ? row_variables(drive, robot, paths[session].start, paths[session].ends, number)
-             : row_variables(drive, robot, Pose(), std::vector<Pose>(drive.rows()), number);
+  return led ? drive::row_variables(drive, robot, paths[session].start, paths[session].ends, number)
+             : drive::row_variables(drive, robot, Pose(), std::vector<Pose>(drive.rows()), number);
 }
 
 Column make_column(Channel channel, const Shape& shape, int session, const ShapeContext& context) {
   const std::vector<DrivenRecording>& recordings = context.recordings();
   Column column;
-  if (acts_on(channel) == ActsOn::views) {
-    const auto add = [&](Instant at, bool acts, std::vector<std::vector<ViewPattern>>& patterns) {
+  if (effects::acts_on(channel) == effects::ActsOn::views) {
+    const auto add = [&](Instant at, bool acts,
+                         std::vector<std::vector<effects::ViewPattern>>& patterns) {
       if (!acts) return;
       auto values = context.values(shape, at);
       keep_session(values, session);
@@ -160,20 +161,20 @@ Column make_column(Channel channel, const Shape& shape, int session, const Shape
       }
       column.largest = std::max(column.largest, largest(values));
     };
-    add(Instant::sighting, acts_on_sightings(channel), column.pattern.sightings);
-    add(Instant::truth, acts_on_truth(channel), column.pattern.truths);
-    add(Instant::fix, acts_on_fixes(channel), column.pattern.fixes);
-    add(Instant::loop, acts_on_loops(channel), column.pattern.loops);
+    add(Instant::sighting, effects::acts_on_sightings(channel), column.pattern.sightings);
+    add(Instant::truth, effects::acts_on_truth(channel), column.pattern.truths);
+    add(Instant::fix, effects::acts_on_fixes(channel), column.pattern.fixes);
+    add(Instant::loop, effects::acts_on_loops(channel), column.pattern.loops);
     return column;
   }
-  const bool readings = acts_on(channel) == ActsOn::readings;
+  const bool readings = effects::acts_on(channel) == effects::ActsOn::readings;
   auto values = context.values(shape, readings ? Instant::end : Instant::middle);
   keep_session(values, session);
   for (std::size_t s = 0; s < recordings.size(); ++s) {
-    std::vector<DrivePattern>& patterns = column.pattern.drives.emplace_back();
+    std::vector<effects::DrivePattern>& patterns = column.pattern.drives.emplace_back();
     patterns.reserve(values[s].size());
     for (std::size_t row = 0; row < values[s].size(); ++row) {
-      patterns.push_back(drive_pattern(channel, values[s][row], context.motion(s, row)));
+      patterns.push_back(effects::drive_pattern(channel, values[s][row], context.motion(s, row)));
     }
   }
   column.largest = adds_to_rows(channel, shape)
@@ -217,7 +218,7 @@ bool adds_to_rows(Channel channel, const Shape& shape) {
   if (channel != Channel::advance && channel != Channel::rotate) return false;
   const std::vector<std::string>& names = shape.variables();
   return std::none_of(names.begin(), names.end(),
-                      [](const std::string& name) { return is_event(name); });
+                      [](const std::string& name) { return recording::is_event(name); });
 }
 
 double size_of_additions(Channel channel, const Shape& shape, int session,
@@ -229,7 +230,7 @@ double size_of_additions(Channel channel, const Shape& shape, int session,
   for (std::size_t s = 0; s < values.size(); ++s) {
     if (session >= 0 && s != idx(session)) continue;
     for (std::size_t row = 0; row < values[s].size(); ++row) {
-      const DrivePattern unit = drive_pattern(gain, 1.0, context.motion(s, row));
+      const effects::DrivePattern unit = effects::drive_pattern(gain, 1.0, context.motion(s, row));
       added += std::abs(values[s][row]);
       moved += std::abs(gain == Channel::travel ? unit.advance : unit.turn);
     }
@@ -240,8 +241,8 @@ double size_of_additions(Channel channel, const Shape& shape, int session,
   return share * facts_of(channel).prior_sd / facts_of(gain).prior_sd;
 }
 
-EffectPattern effect_column(Channel channel, const Shape& shape, int session,
-                            const ShapeContext& context) {
+estimation::EffectPattern effect_column(Channel channel, const Shape& shape, int session,
+                                        const ShapeContext& context) {
   return make_column(channel, shape, session, context).pattern;
 }
 
@@ -250,20 +251,20 @@ std::size_t coefficient_count(const Effect& effect, std::size_t sessions) {
 }
 
 std::vector<double> coefficients_of(const Effect& effect, std::size_t sessions) {
-  require_shapes(effect);
+  effects::require_shapes(effect);
   const std::size_t expected = coefficient_count(effect, sessions);
   if (effect.coefficients.empty()) return std::vector<double>(expected, 0.0);
   if (effect.coefficients.size() != expected) {
-    throw std::invalid_argument(
-        joined("effect \"", effect.name, "\" has ", effect.coefficients.size(),
-               " coefficients, expected ", expected, ": one per shape",
-               effect.per_session ? joined(" and session, of which there are ", sessions) : ""));
+    throw std::invalid_argument(text::joined(
+        "effect \"", effect.name, "\" has ", effect.coefficients.size(), " coefficients, expected ",
+        expected, ": one per shape",
+        effect.per_session ? text::joined(" and session, of which there are ", sessions) : ""));
   }
   return effect.coefficients;
 }
 
 bool is_laid_out(Channel channel) {
-  return is_delay(channel) || is_steering(channel);
+  return effects::is_delay(channel) || effects::is_steering(channel);
 }
 
 EffectColumns effect_columns(const std::vector<Effect>& effects, const ShapeContext& context) {
@@ -295,8 +296,8 @@ std::vector<double> retimed(const std::vector<double>& instants, const DrivenRec
   for (const Effect& effect : effects) {
     if (effect.channel != delay) continue;
     const std::vector<double> coefficients = coefficients_of(effect, sessions);
-    const RowVariables variables =
-        instant_variables(recording.drive, robot, instants, nowhere, static_cast<int>(session));
+    const RowVariables variables = drive::instant_variables(recording.drive, robot, instants,
+                                                            nowhere, static_cast<int>(session));
     for (std::size_t k = 0; k < effect.shape.size(); ++k) {
       const std::vector<double> f =
           in_words_of(effect, [&] { return effect.shape[k].values(variables); });
@@ -311,22 +312,22 @@ std::vector<DrivenRecording> steered(const std::vector<DrivenRecording>& recordi
                                      const std::vector<Effect>& effects, const Robot& robot,
                                      const std::vector<SessionPath>& paths) {
   std::vector<DrivenRecording> result = recordings;
-  if (!steers(effects)) return result;
+  if (!effects::steers(effects)) return result;
   for (std::size_t s = 0; s < result.size(); ++s) {
     MotionRows& drive = result[s].drive;
     const RowVariables variables = variables_along(drive, robot, paths, s);
-    drive = steered(std::move(drive), robot, effects, variables, static_cast<int>(s));
+    drive = effects::steered(std::move(drive), robot, effects, variables, static_cast<int>(s));
   }
   return result;
 }
 
 bool leave_a_way(const std::vector<Effect>& effects, const std::vector<DrivenRecording>& recordings,
                  const Robot& robot, const std::vector<SessionPath>& paths) {
-  if (!steers(effects)) return true;
+  if (!effects::steers(effects)) return true;
   for (std::size_t s = 0; s < recordings.size(); ++s) {
     const MotionRows& drive = recordings[s].drive;
     const RowVariables variables = variables_along(drive, robot, paths, s);
-    if (!leave_a_way(effects, drive, robot, variables, static_cast<int>(s))) return false;
+    if (!effects::leave_a_way(effects, drive, robot, variables, static_cast<int>(s))) return false;
   }
   return true;
 }
@@ -367,4 +368,4 @@ std::vector<DrivenRecording> retimed(const std::vector<DrivenRecording>& recordi
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -26,7 +26,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 /// What the data tell of a coefficient counts only above this share of what its column would tell
 /// if nothing else were unknown: what rounding leaves.
@@ -48,12 +48,12 @@ struct Coefficient {
 [[nodiscard]] double largest_but_for_spikes(const std::vector<double>& values);
 
 struct EffectColumns {
-  EffectParameters border;
+  estimation::EffectParameters border;
   std::vector<Coefficient> coefficients;  ///< one per entry of the border
 };
 
 /// A row without its noise: `missing` and `excess` are as SessionPath has them.
-void add_noise(const Vector2& missing, double excess, RowMotion& row);
+void add_noise(const Vector2& missing, double excess, drive::RowMotion& row);
 
 /// What shapes may speak of, for all sessions.
 class ShapeContext {
@@ -71,7 +71,7 @@ class ShapeContext {
   /// Makes the variables of all sessions at these instants.
   void prepare(Instant at) const;
   /// A row's travels, its noise taken out.
-  [[nodiscard]] RowMotion motion(std::size_t session, std::size_t row) const;
+  [[nodiscard]] drive::RowMotion motion(std::size_t session, std::size_t row) const;
 
   [[nodiscard]] const std::vector<DrivenRecording>& recordings() const { return recordings_; }
   [[nodiscard]] const Robot& robot() const { return robot_; }
@@ -85,8 +85,8 @@ class ShapeContext {
 
 /// One column per coefficient: a channel with a given shape, acting in one session (-1: in all).
 /// Throws std::invalid_argument on a shape that cannot be evaluated.
-[[nodiscard]] EffectPattern effect_column(Channel channel, const Shape& shape, int session,
-                                          const ShapeContext& context);
+[[nodiscard]] estimation::EffectPattern effect_column(Channel channel, const Shape& shape,
+                                                      int session, const ShapeContext& context);
 
 /// Columns of all effects. Throws std::invalid_argument, with the effect's name, on a shape that
 /// cannot be evaluated, or a number of coefficients that does not match.
@@ -138,4 +138,4 @@ class ShapeContext {
 [[nodiscard]] double size_of_additions(Channel channel, const Shape& shape, int session,
                                        const ShapeContext& context);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

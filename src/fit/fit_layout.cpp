@@ -11,7 +11,7 @@
 #include <cmath>
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 /// Then what was laid out by another path is not what its columns say.
@@ -23,7 +23,7 @@ bool steering_sees_path(const std::vector<Effect>& effects) {
     });
   };
   return std::any_of(effects.begin(), effects.end(), [&](const Effect& effect) {
-    return is_steering(effect.channel) &&
+    return effects::is_steering(effect.channel) &&
            std::any_of(effect.shape.begin(), effect.shape.end(), sees_path);
   });
 }
@@ -31,7 +31,7 @@ bool steering_sees_path(const std::vector<Effect>& effects) {
 /// As it was read, which leaves every row a way.
 std::vector<Effect> without_steering(std::vector<Effect> effects) {
   for (Effect& effect : effects) {
-    if (is_steering(effect.channel)) std::ranges::fill(effect.coefficients, 0.0);
+    if (effects::is_steering(effect.channel)) std::ranges::fill(effect.coefficients, 0.0);
   }
   return effects;
 }
@@ -39,18 +39,18 @@ std::vector<Effect> without_steering(std::vector<Effect> effects) {
 /// What was recorded, driven as the steering effects say.
 std::vector<DrivenRecording> as_steered(const FitTask& task, const FitState& fit) {
   const Model& model = fit.model;
-  if (!steers(model.effects)) return task.recorded;
-  return with_gyro(steered(task.raw, model.effects, model.robot, fit.paths), model.robot,
-                   model.noise);
+  if (!effects::steers(model.effects)) return task.recorded;
+  return odometry::with_gyro(steered(task.raw, model.effects, model.robot, fit.paths), model.robot,
+                             model.noise);
 }
 
 /// Spans are left out where delays move them.
-ProblemOptions moved_options(const FitTask& task, const Model& model) {
-  ProblemOptions result = task.options.problem;
+estimation::ProblemOptions moved_options(const FitTask& task, const Model& model) {
+  estimation::ProblemOptions result = task.options.problem;
   const std::size_t sessions = task.recorded.size();
   if (result.left_out.size() > sessions) {
-    throw std::invalid_argument(joined("spans are left out of ", result.left_out.size(),
-                                       " recordings, of which there are ", sessions));
+    throw std::invalid_argument(text::joined("spans are left out of ", result.left_out.size(),
+                                             " recordings, of which there are ", sessions));
   }
   result.left_out.resize(result.left_out.empty() ? 0 : sessions);
   for (std::size_t s = 0; s < result.left_out.size(); ++s) {
@@ -69,15 +69,16 @@ ProblemOptions moved_options(const FitTask& task, const Model& model) {
 }
 
 /// Mean of where these poses have seen the landmark; of ranges or bearings alone, where they were.
-Vector2 place_seen_from(const RecordingProblem& problem, int landmark,
+Vector2 place_seen_from(const estimation::RecordingProblem& problem, int landmark,
                         const std::vector<Pose>& poses) {
   Vector2 sum = Vector2::Zero();
   double count = 0.0;
-  for (const Measurement& one : problem.measurements) {
+  for (const estimation::Measurement& one : problem.measurements) {
     const int pose = one.from - problem.landmark_count();
     if (one.to != landmark || pose < 0 || pose >= static_cast<int>(poses.size())) continue;
     const std::optional<Vector2> seen =
-        locates(one) ? one.kind->seen_from(one, poses[idx(pose)], one.mounted) : std::nullopt;
+        estimation::locates(one) ? one.kind->seen_from(one, poses[idx(pose)], one.mounted)
+                                 : std::nullopt;
     sum += seen.value_or(poses[idx(pose)].position());
     count += 1.0;
   }
@@ -95,7 +96,7 @@ void shorten_steering(const FitTask& task, const std::vector<Effect>& from, FitS
     if (leave_a_way(effects, task.raw, fit.model.robot, fit.paths)) return;
     share = halving < kHalvings ? 0.5 * share : 0.0;
     for (std::size_t e = 0; e < effects.size(); ++e) {
-      if (!is_steering(effects[e].channel)) continue;
+      if (!effects::is_steering(effects[e].channel)) continue;
       for (std::size_t k = 0; k < effects[e].coefficients.size(); ++k) {
         const double before = from[e].coefficients[k];
         effects[e].coefficients[k] = before + share * (wanted[e].coefficients[k] - before);
@@ -110,14 +111,14 @@ void lay_out_recordings(const FitTask& task, Fitting& now) {
   now.laid_out = fit.model.effects;
   fit.recordings = retimed(as_steered(task, fit), fit.model.effects, fit.model.robot);
   fit.used = moved_options(task, fit.model);
-  fit.problem = make_problem(fit.recordings, fit.model, fit.used);
+  fit.problem = estimation::make_problem(fit.recordings, fit.model, fit.used);
 }
 
 bool layout_moved(const Fitting& now) {
   constexpr double kMovedLayout = 0.02;  // standard deviations
   const FitState& fit = now.fit;
   if (steering_sees_path(fit.model.effects)) return true;
-  const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
+  const std::vector<int> unknown = estimation::unknown_coefficients(fit.columns.border);
   for (std::size_t k = 0; k < unknown.size(); ++k) {
     const Coefficient& one = fit.columns.coefficients[idx(unknown[k])];
     if (!is_laid_out(fit.model.effects[one.effect].channel)) continue;
@@ -134,12 +135,12 @@ void lay_out_again(const FitTask& task, Fitting& now) {
   now.fit.adjustment.state = placed(now.fit, landmarks);
 }
 
-RecordingState along_paths(const RecordingProblem& problem,
-                           const std::vector<DrivenRecording>& recordings,
-                           const std::vector<SessionPath>& paths,
-                           const std::map<std::string, Vector2>& landmarks) {
-  RecordingState state;
-  for (const PoseNode& node : problem.poses) {
+estimation::RecordingState along_paths(const estimation::RecordingProblem& problem,
+                                       const std::vector<DrivenRecording>& recordings,
+                                       const std::vector<SessionPath>& paths,
+                                       const std::map<std::string, Vector2>& landmarks) {
+  estimation::RecordingState state;
+  for (const estimation::PoseNode& node : problem.poses) {
     const std::size_t session = idx(node.session);
     state.poses.push_back(pose_at(recordings[session].drive, paths[session], node.t));
   }
@@ -148,12 +149,13 @@ RecordingState along_paths(const RecordingProblem& problem,
     state.landmarks.push_back(known != landmarks.end() ? known->second
                                                        : place_seen_from(problem, k, state.poses));
   }
-  state.orientations = orientations_seen_from(problem, state.poses);
+  state.orientations = estimation::orientations_seen_from(problem, state.poses);
   return state;
 }
 
-RecordingState placed(const FitState& fit, const std::map<std::string, Vector2>& landmarks) {
+estimation::RecordingState placed(const FitState& fit,
+                                  const std::map<std::string, Vector2>& landmarks) {
   return along_paths(fit.problem, fit.recordings, fit.paths, landmarks);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -14,6 +14,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace fitting;
+
 namespace {
 
 std::vector<FittedLandmark> landmarks_of(const FitState& fit) {
@@ -34,21 +36,25 @@ std::vector<FittedLandmark> landmarks_of(const FitState& fit) {
 }
 
 /// With how far off it is, and what the receiver thought of it.
-std::string left_out_text(const FitState& fit, const Measurement& one) {
-  std::string text = describe(fit.problem, one);
-  const bool fix = is_position(one);
-  if (!fix && !is_tie(one)) return text;
-  const ViewPattern view = view_of(fit.columns.border, offsets_of(fit), one);
-  const Vector4 error =
-      measurement_rows(fit.problem, one, fit.adjustment.state, one.value, view).error;
+std::string left_out_text(const FitState& fit, const estimation::Measurement& one) {
+  std::string text = estimation::describe(fit.problem, one);
+  const bool fix = estimation::is_position(one);
+  if (!fix && !estimation::is_tie(one)) return text;
+  const effects::ViewPattern view = estimation::view_of(fit.columns.border, offsets_of(fit), one);
+  const estimation::Vector4 error =
+      estimation::measurement_rows(fit.problem, one, fit.adjustment.state, one.value, view).error;
   text = (fix ? "fixes.csv: " : "loops.csv: ") + text + ", " +
-         fixed_text(error.head<2>().norm(), 2) + " m off";
-  if (!fix) return text + " and " + fixed_text(std::abs(error[2]), 3) + " rad";
+         text::fixed_text(error.head<2>().norm(), 2) + " m off";
+  if (!fix) return text + " and " + text::fixed_text(std::abs(error[2]), 3) + " rad";
   const double quality = fit.recordings[idx(one.session)].fixes[one.source].quality;
-  return std::isnan(quality) ? text : text + " (quality " + short_text(quality) + ")";
+  return std::isnan(quality) ? text : text + " (quality " + text::short_text(quality) + ")";
 }
 
 }  // namespace
+
+}  // namespace trussmap
+
+namespace trussmap::fitting {
 
 FitterOptions fitter_options(const FitOptions& options) {
   FitterOptions how;
@@ -60,7 +66,7 @@ FitterOptions fitter_options(const FitOptions& options) {
   how.gate = options.gate;
   how.most_left_out = options.most_left_out;
   for (const std::vector<TimeSpan>& spans : options.excluded) {
-    how.problem.left_out.push_back(merged(spans));
+    how.problem.left_out.push_back(recording::merged(spans));
   }
   return how;
 }
@@ -74,7 +80,7 @@ std::vector<std::string> left_out_texts(const FitState& fit) {
 }
 
 int estimated_coefficients(const FitState& fit) {
-  return static_cast<int>(unknown_coefficients(fit.columns.border).size());
+  return static_cast<int>(estimation::unknown_coefficients(fit.columns.border).size());
 }
 
 ModelFit model_fit(FitState state, const FitOptions& options) {
@@ -94,11 +100,19 @@ ModelFit model_fit(FitState state, const FitOptions& options) {
   return fit;
 }
 
+}  // namespace trussmap::fitting
+
+namespace trussmap {
+
 ModelFit fit_model(const std::vector<DrivenRecording>& recordings, const Model& model,
                    const FitOptions& options) {
-  require_well_formed(recordings, model.robot);
+  drive::require_well_formed(recordings, model.robot);
   return model_fit(fit_recordings(recordings, model, fitter_options(options)), options);
 }
+
+}  // namespace trussmap
+
+namespace trussmap::fitting {
 
 ModelFit refit(const std::vector<DrivenRecording>& recordings, const Model& model,
                const ModelFit& near) {
@@ -106,6 +120,10 @@ ModelFit refit(const std::vector<DrivenRecording>& recordings, const Model& mode
   how.near = near.state.get();
   return model_fit(fit_recordings(recordings, model, how), near.options);
 }
+
+}  // namespace trussmap::fitting
+
+namespace trussmap {
 
 FittedMap fitted_map(const ModelFit& fit, std::size_t points) {
   FittedMap map;

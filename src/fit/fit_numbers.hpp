@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 // Which noise there is.
 inline constexpr double kWorthFitting = 2.0;   ///< sds of a score: about one in 40 by chance
@@ -45,4 +45,4 @@ inline constexpr double kLeastGain = 1e-3;  ///< of L, to go on for
 inline constexpr double kRoughly = 0.05;    ///< the same, to compare processes
 inline constexpr double kLeastInformation = 1e-2;  ///< of a logarithm: an sd of 10 tells nothing
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

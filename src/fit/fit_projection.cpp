@@ -7,19 +7,20 @@
 #include <algorithm>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 constexpr Eigen::Index kColumns = 16;  // worked on at once
 
 }  // namespace
 
-FitProjection::FitProjection(const FitState& fit, const RecordingProblem& problem,
-                             const RecordingSystem& system, const Eigen::MatrixXd& nuisance,
-                             std::shared_ptr<const FittedRows> fitted)
+FitProjection::FitProjection(const FitState& fit, const estimation::RecordingProblem& problem,
+                             const estimation::RecordingSystem& system,
+                             const Eigen::MatrixXd& nuisance,
+                             std::shared_ptr<const estimation::FittedRows> fitted)
     : problem_(problem),
       system_(system),
-      fitted_(fitted ? std::move(fitted) : std::make_shared<const FittedRows>(system)),
+      fitted_(fitted ? std::move(fitted) : std::make_shared<const estimation::FittedRows>(system)),
       left_out_(problem.measurements.size(), false) {
   for (const int k : fit.adjustment.left_out) left_out_[idx(k)] = true;
   const Eigen::MatrixXd& M = system.border();
@@ -32,7 +33,7 @@ FitProjection::FitProjection(const FitState& fit, const RecordingProblem& proble
     for (Eigen::Index c = 0; c < Q_.cols(); ++c) {
       if (Q_.col(c).norm() > 0.0) Q_.col(c).normalize();
     }
-    Q_ = orthonormal_basis(Q_, kSameDirection);
+    Q_ = linalg::orthonormal_basis(Q_, kSameDirection);
   }
 }
 
@@ -47,7 +48,7 @@ Eigen::MatrixXd FitProjection::times(Eigen::MatrixXd columns) const {
 }
 
 Eigen::MatrixXd FitProjection::own_block(std::size_t measurement) const {
-  const Measurement& one = problem_.measurements[measurement];
+  const estimation::Measurement& one = problem_.measurements[measurement];
   Eigen::MatrixXd own = Eigen::MatrixXd::Identity(one.rows, one.rows);
   if (left_out_[measurement]) return own;
   own -= fitted_->by_nodes(system_, measurement);
@@ -56,4 +57,4 @@ Eigen::MatrixXd FitProjection::own_block(std::size_t measurement) const {
   return 0.5 * (own + own.transpose());
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

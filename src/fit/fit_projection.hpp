@@ -16,16 +16,16 @@
 #include <memory>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 class FitProjection {
  public:
   /// `problem` has the fit's measurements, perhaps with other weights; `system` is factorised.
   /// `nuisance`: columns that are already free of J. `fitted`: the system's, where they are there
   /// already. Keeps references to problem and system.
-  FitProjection(const FitState& fit, const RecordingProblem& problem, const RecordingSystem& system,
-                const Eigen::MatrixXd& nuisance,
-                std::shared_ptr<const FittedRows> fitted = nullptr);
+  FitProjection(const FitState& fit, const estimation::RecordingProblem& problem,
+                const estimation::RecordingSystem& system, const Eigen::MatrixXd& nuisance,
+                std::shared_ptr<const estimation::FittedRows> fitted = nullptr);
 
   /// P times the columns, some at a time.
   [[nodiscard]] Eigen::MatrixXd times(Eigen::MatrixXd columns) const;
@@ -39,9 +39,9 @@ class FitProjection {
   [[nodiscard]] bool left_out(std::size_t measurement) const { return left_out_[measurement]; }
 
  private:
-  const RecordingProblem& problem_;
-  const RecordingSystem& system_;
-  std::shared_ptr<const FittedRows> fitted_;
+  const estimation::RecordingProblem& problem_;
+  const estimation::RecordingSystem& system_;
+  std::shared_ptr<const estimation::FittedRows> fitted_;
   std::vector<bool> left_out_;
   Eigen::MatrixXd Q_;
 };
@@ -49,4 +49,4 @@ class FitProjection {
 /// Columns count as one that differ by no more than this share of the largest pivot.
 inline constexpr double kSameDirection = 1e-10;
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

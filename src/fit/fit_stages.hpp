@@ -12,7 +12,7 @@
 
 #include "fit/fit_state.hpp"
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 /// What is asked.
 struct FitTask {
@@ -57,8 +57,8 @@ void lay_out_recordings(const FitTask& task, Fitting& now);
 /// The poses of the new instants lie on the old path.
 void lay_out_again(const FitTask& task, Fitting& now);
 /// With these landmarks, every pose on the fit's path.
-[[nodiscard]] RecordingState placed(const FitState& fit,
-                                    const std::map<std::string, Vector2>& landmarks);
+[[nodiscard]] estimation::RecordingState placed(const FitState& fit,
+                                                const std::map<std::string, Vector2>& landmarks);
 
 /// A step of steering coefficients, from those of `from` on, shortened until it leaves the measured
 /// wheel a way ahead in every row.
@@ -78,8 +78,8 @@ void hold_coefficient(const FitTask& task, int column, NotFitted why, double unc
 [[nodiscard]] bool hold_one(const FitTask& task, Fitting& now);
 
 /// What an adjustment `near` left out is only looked at again.
-[[nodiscard]] FitChange adjust_once(const FitTask& task, const RecordingAdjustment* near,
-                                    Fitting& now);
+[[nodiscard]] FitChange adjust_once(const FitTask& task,
+                                    const estimation::RecordingAdjustment* near, Fitting& now);
 
 /// The coefficient of a column, as the model has it.
 [[nodiscard]] inline double coefficient_at(const FitState& fit, std::size_t column) {
@@ -90,7 +90,7 @@ void hold_coefficient(const FitTask& task, int column, NotFitted why, double unc
 /// Standard deviation of the k-th unknown one.
 [[nodiscard]] double sd_of_unknown(const FitState& fit, std::size_t k);
 
-[[nodiscard]] std::map<std::string, Vector2> places_in(const RecordingProblem& problem,
-                                                       const RecordingState& state);
+[[nodiscard]] std::map<std::string, Vector2> places_in(const estimation::RecordingProblem& problem,
+                                                       const estimation::RecordingState& state);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 constexpr int kShortStretch = 20;  // poses
@@ -16,8 +16,9 @@ constexpr int kShortStretch = 20;  // poses
 /// How a start may be laid down, in the order in which they are tried.
 enum class StartKind { common_errors, none_wrong, short_stretches, careful };
 
-bool have_same_nodes(const RecordingProblem& one, const RecordingProblem& other) {
-  const auto same = [](const PoseNode& a, const PoseNode& b) {
+bool have_same_nodes(const estimation::RecordingProblem& one,
+                     const estimation::RecordingProblem& other) {
+  const auto same = [](const estimation::PoseNode& a, const estimation::PoseNode& b) {
     return a.session == b.session && a.t == b.t;
   };
   return one.landmarks == other.landmarks &&
@@ -41,8 +42,8 @@ void take_common_errors(const Eigen::VectorXd& coefficients, Fitting& now) {
   }
 }
 
-StartOptions start_options(const FitterOptions& options, StartKind kind) {
-  StartOptions how;
+estimation::StartOptions start_options(const FitterOptions& options, StartKind kind) {
+  estimation::StartOptions how;
   how.careful = kind == StartKind::careful;
   if (kind == StartKind::short_stretches) how.first_stretch = kShortStretch;
   if (options.gate) how.gate = *options.gate;
@@ -64,19 +65,21 @@ bool own_are_known(const FitTask& task, const FitState& fit) {
 void lay_start(const FitTask& task, StartKind kind, Fitting& now) {
   FitState& fit = now.fit;
   const Robot& robot = fit.model.robot;
-  static_cast<void>(choose_gauge(fit.problem));  // refuses what has no start
+  static_cast<void>(estimation::choose_gauge(fit.problem));  // refuses what has no start
   const bool freed = own_are_known(task, fit) || (fit.common_errors > 0 && !now.only_common());
   const bool as_fitted = task.options.problem.left_out.empty() && !freed;
   const std::vector<DrivenRecording> without =
       freed ? without_own_effects(task, fit) : std::vector<DrivenRecording>();
   const std::vector<DrivenRecording>& recordings = freed ? without : fit.recordings;
-  ProblemOptions all = task.options.problem;
+  estimation::ProblemOptions all = task.options.problem;
   all.left_out.clear();
-  const RecordingProblem problem =
-      as_fitted ? fit.problem : make_problem(recordings, fit.model, all);
-  const EffectParameters common =
-      kind == StartKind::none_wrong ? EffectParameters() : common_error_columns(recordings, robot);
-  RecordingStart first = start_of(problem, common, start_options(task.options, kind));
+  const estimation::RecordingProblem problem =
+      as_fitted ? fit.problem : estimation::make_problem(recordings, fit.model, all);
+  const estimation::EffectParameters common =
+      kind == StartKind::none_wrong ? estimation::EffectParameters()
+                                    : estimation::common_error_columns(recordings, robot);
+  estimation::RecordingStart first =
+      estimation::start_of(problem, common, start_options(task.options, kind));
   if (!common.empty()) take_common_errors(first.coefficients, now);
   if (!as_fitted || now.columns_see_paths()) {
     fit.paths = fitted_paths(recordings, robot, problem, {}, {}, first.state);
@@ -128,7 +131,7 @@ std::optional<FitChange> start_again(const FitTask& task, std::optional<FitChang
        {StartKind::none_wrong, StartKind::short_stretches, StartKind::careful}) {
     const std::optional<FitChange> next = adjusted_from(task, kind, now);
     if (!next) continue;
-    const RecordingAdjustment& one = now.fit.adjustment;
+    const estimation::RecordingAdjustment& one = now.fit.adjustment;
     if (!changed || one.gate_widened < best.adjustment.gate_widened ||
         (one.gate_widened == best.adjustment.gate_widened && one.chi2 < best.adjustment.chi2)) {
       best = now.fit;
@@ -173,4 +176,4 @@ FitChange adjust_from_starts(const FitTask& task, Fitting& now) {
   return start_lost(task, now.fit) ? *start_again(task, changed, now) : *changed;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -14,7 +14,7 @@
 #include <limits>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 constexpr double kMostDispersion = 4.0;  // chi^2/dof
@@ -24,7 +24,8 @@ constexpr int kMisfitRounds = 4;
 Model resolved(const Model& model, const std::vector<DrivenRecording>& recordings, bool common) {
   Model result = model;
   if (common) {
-    for (const Effect& effect : common_errors(recordings)) result.effects.push_back(effect);
+    for (const Effect& effect : estimation::common_errors(recordings))
+      result.effects.push_back(effect);
   }
   for (Effect& effect : result.effects) {
     effect.coefficients = coefficients_of(effect, recordings.size());
@@ -45,13 +46,13 @@ double relinearised(const FitTask& task, Fitting& now) {
   const bool noise = task.options.relinearise &&
                      (now.round < kMisfitRounds ||
                       fit.adjustment.chi2 < kMostDispersion * std::max(1, fit.adjustment.dof));
-  const EffectParameters& border = fit.columns.border;
-  const RecordingState& state = fit.adjustment.state;
+  const estimation::EffectParameters& border = fit.columns.border;
+  const estimation::RecordingState& state = fit.adjustment.state;
   const Eigen::VectorXd offsets = offsets_of(fit);
-  const double tails = take_tails(fit.problem, border, offsets, state);
+  const double tails = estimation::take_tails(fit.problem, border, offsets, state);
   if (!noise) return tails;
-  return std::max(tails,
-                  relinearise(fit.problem, fit.recordings, fit.model, border, offsets, state));
+  return std::max(tails, estimation::relinearise(fit.problem, fit.recordings, fit.model, border,
+                                                 offsets, state));
 }
 
 /// m and rad.
@@ -86,13 +87,13 @@ FitChange follow(const FitTask& task, Fitting& now) {
 /// them: far from it large residuals make anything appear observable.
 void hold_unobservable(const FitTask& task, Fitting& now) {
   FitState& fit = now.fit;
-  const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
+  const std::vector<int> unknown = estimation::unknown_coefficients(fit.columns.border);
   if (unknown.empty()) return;
-  EffectParameters without = fit.columns.border;
+  estimation::EffectParameters without = fit.columns.border;
   for (const int k : unknown) without[idx(k)].held = coefficient_at(fit, idx(k));
-  RecordingAdjustmentOptions how;
+  estimation::RecordingAdjustmentOptions how;
   how.gate = task.options.gate;
-  fit.adjustment = adjust_from(fit.adjustment.state, fit.problem, without, how);
+  fit.adjustment = estimation::adjust_from(fit.adjustment.state, fit.problem, without, how);
   static_cast<void>(follow(task, now));
   take_columns(task, now);
   while (hold_one(task, now)) {
@@ -112,8 +113,8 @@ bool is_settled(const FitterOptions& options, const Fitting& now, const FitChang
   if (change.offsets > options.still_offset) return false;
   if (now.fit.columns.border.empty()) return true;
   if (now.only_common() && !has([](Channel one) { return one == Channel::compass; })) return true;
-  if (unknown_coefficients(now.fit.columns.border).empty()) return change.path < kStill;
-  return change.coefficients < (has(is_delay) ? kCutAnew : 1.0);
+  if (estimation::unknown_coefficients(now.fit.columns.border).empty()) return change.path < kStill;
+  return change.coefficients < (has(effects::is_delay) ? kCutAnew : 1.0);
 }
 
 /// Whether rounds go round in circles: by a delay a sighting may fall into one row and back. Each
@@ -140,7 +141,7 @@ std::vector<EffectEstimate> estimates(const Fitting& now) {
     }
     result.push_back(std::move(estimate));
   }
-  const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
+  const std::vector<int> unknown = estimation::unknown_coefficients(fit.columns.border);
   for (std::size_t k = 0; k < unknown.size(); ++k) {
     const Coefficient& one = fit.columns.coefficients[idx(unknown[k])];
     result[one.effect].sd[one.place] = sd_of_unknown(fit, k);
@@ -158,12 +159,12 @@ std::string still_moving(const FitterOptions& options, const FitChange& change) 
   const auto add = [&moving](const std::string& one) {
     moving += (moving.empty() ? "" : ", ") + one;
   };
-  if (change.path > kPathSeen) add(joined("the path by up to ", change.path, " m or rad"));
+  if (change.path > kPathSeen) add(text::joined("the path by up to ", change.path, " m or rad"));
   if (change.offsets > kSeen) {
-    add(joined("a measurement by up to ", change.offsets, " standard deviations"));
+    add(text::joined("a measurement by up to ", change.offsets, " standard deviations"));
   }
   if (coefficient > kCoefficient) {
-    add(joined("a coefficient by up to ", coefficient, " standard errors"));
+    add(text::joined("a coefficient by up to ", coefficient, " standard errors"));
   }
   return moving;
 }
@@ -176,9 +177,10 @@ void tell_whether_settled(const FitterOptions& options, const FitChange& change,
 
 }  // namespace
 
-FitChange adjust_once(const FitTask& task, const RecordingAdjustment* near, Fitting& now) {
+FitChange adjust_once(const FitTask& task, const estimation::RecordingAdjustment* near,
+                      Fitting& now) {
   FitState& fit = now.fit;
-  RecordingAdjustmentOptions how;
+  estimation::RecordingAdjustmentOptions how;
   how.gate = task.options.gate;
   how.most_left_out = task.options.most_left_out;
   how.landmark_uncertainties = task.options.landmark_uncertainties;
@@ -187,16 +189,17 @@ FitChange adjust_once(const FitTask& task, const RecordingAdjustment* near, Fitt
   for (bool adjusted = false; !adjusted;) {
     how.coefficients = unknown_values(fit);
     try {
-      fit.adjustment = adjust_from(fit.adjustment.state, fit.problem, fit.columns.border, how);
+      fit.adjustment =
+          estimation::adjust_from(fit.adjustment.state, fit.problem, fit.columns.border, how);
       adjusted = true;
-    } catch (const UndeterminedError& error) {
-      const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
+    } catch (const estimation::UndeterminedError& error) {
+      const std::vector<int> unknown = estimation::unknown_coefficients(fit.columns.border);
       hold_coefficient(task, unknown[idx(error.coefficients().back())], NotFitted::undetermined,
                        0.0, now);
     }
   }
   double changed = 0.0;
-  const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
+  const std::vector<int> unknown = estimation::unknown_coefficients(fit.columns.border);
   for (std::size_t k = 0; k < unknown.size(); ++k) {
     const Coefficient& one = fit.columns.coefficients[idx(unknown[k])];
     double& value = fit.model.effects[one.effect].coefficients[one.place];
@@ -216,8 +219,8 @@ double sd_of_unknown(const FitState& fit, std::size_t k) {
   return std::sqrt(fit.adjustment.coefficient_covariance(at, at));
 }
 
-std::map<std::string, Vector2> places_in(const RecordingProblem& problem,
-                                         const RecordingState& state) {
+std::map<std::string, Vector2> places_in(const estimation::RecordingProblem& problem,
+                                         const estimation::RecordingState& state) {
   std::map<std::string, Vector2> places;
   for (std::size_t k = 0; k < problem.landmarks.size(); ++k) {
     places[problem.landmarks[k]] = state.landmarks[k];
@@ -227,7 +230,7 @@ std::map<std::string, Vector2> places_in(const RecordingProblem& problem,
 
 FitState fit_recordings(const std::vector<DrivenRecording>& recordings, const Model& model,
                         const FitterOptions& options) {
-  const FitTask task{recordings, with_gyro(recordings, model.robot, model.noise),
+  const FitTask task{recordings, odometry::with_gyro(recordings, model.robot, model.noise),
                      resolved(model, recordings, options.free_common_errors), options};
   Fitting now;
   FitState& fit = now.fit;
@@ -270,10 +273,10 @@ FitState fit_recordings(const std::vector<DrivenRecording>& recordings, const Mo
   return std::move(fit);
 }
 
-RecordingProblem whole_problem(const FitState& fit) {
-  ProblemOptions all = fit.used;
+estimation::RecordingProblem whole_problem(const FitState& fit) {
+  estimation::ProblemOptions all = fit.used;
   all.left_out.clear();
-  return make_problem(fit.recordings, fit.model, all);
+  return estimation::make_problem(fit.recordings, fit.model, all);
 }
 
 std::map<std::string, Vector2> landmark_places(const FitState& fit) {
@@ -288,4 +291,4 @@ Eigen::VectorXd offsets_of(const FitState& fit) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

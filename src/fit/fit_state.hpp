@@ -23,12 +23,12 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 struct FitterOptions {
   bool fit_effects = true;  ///< as FitOptions
   /// What is left out is given in the recordings' own times; delays move it with its sightings.
-  ProblemOptions problem;
+  estimation::ProblemOptions problem;
   std::optional<double> gate;  ///< against wrong sightings, as RecordingAdjustmentOptions
   double most_left_out = 1.0;  ///< by the gate, as RecordingAdjustmentOptions
   /// Frees the systematic errors that nearly every robot has (common_errors.hpp): they come after
@@ -52,11 +52,12 @@ struct FitState {
   Model model;  ///< with resolved effects and their coefficients
   std::vector<EffectEstimate> effects;
   std::vector<DrivenRecording> recordings;  ///< as fitted: moved back by the delays
-  RecordingProblem problem;
-  ProblemOptions used;    ///< by which the problem was made; spans in the times of `recordings`
+  estimation::RecordingProblem problem;
+  estimation::ProblemOptions
+      used;               ///< by which the problem was made; spans in the times of `recordings`
   EffectColumns columns;  ///< known effects held, the others free, at `coefficients`
   std::size_t common_errors = 0;  ///< how many of the last effects are freed common errors
-  RecordingAdjustment adjustment;
+  estimation::RecordingAdjustment adjustment;
   std::vector<SessionPath> paths;  ///< may be empty where the options ask for none
   bool settled = true;             ///< shapes and path agree
   int rounds = 0;                  ///< of shapes and path in turn
@@ -84,7 +85,7 @@ struct FitState {
 [[nodiscard]] int estimated_coefficients(const FitState& fit);
 
 /// All that was measured, what the fit leaves out included.
-[[nodiscard]] RecordingProblem whole_problem(const FitState& fit);
+[[nodiscard]] estimation::RecordingProblem whole_problem(const FitState& fit);
 
 /// Where the fit has the landmarks, m, map frame.
 [[nodiscard]] std::map<std::string, Vector2> landmark_places(const FitState& fit);
@@ -92,4 +93,4 @@ struct FitState {
 /// All effect parameters less their references.
 [[nodiscard]] Eigen::VectorXd offsets_of(const FitState& fit);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

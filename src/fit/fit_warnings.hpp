@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 /// What a diagnosis has found out about a fit.
 struct FitAnswers {
@@ -23,4 +23,4 @@ struct FitAnswers {
 [[nodiscard]] std::vector<std::string> fit_warnings(const FitState& fit,
                                                     const FitAnswers& answers = {});
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -13,37 +13,40 @@
 
 #include <Eigen/Cholesky>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 /// One session's rows under the effects.
 class Reckoner {
  public:
-  Reckoner(const MotionRows& drive, std::vector<DrivePattern> effects)
+  Reckoner(const MotionRows& drive, std::vector<effects::DrivePattern> effects)
       : drive_(drive), effects_(std::move(effects)) {}
 
   /// Motion over part of the drive, in the frame of its start.
   [[nodiscard]] Pose motion(double from, double to) const {
-    return segment_motion(moved(segment_rows(drive_, from, to))).displacement;
+    return estimation::segment_motion(moved(estimation::segment_rows(drive_, from, to)))
+        .displacement;
   }
-  [[nodiscard]] Pose motion(const SegmentRow& row) const {
-    const SegmentRow moved = with_effects(row, effects_);
-    return displacement_of({moved.path, moved.slip, moved.turn});
+  [[nodiscard]] Pose motion(const estimation::SegmentRow& row) const {
+    const estimation::SegmentRow moved = estimation::with_effects(row, effects_);
+    return odometry::displacement_of({moved.path, moved.slip, moved.turn});
   }
-  [[nodiscard]] std::vector<SegmentRow> moved(const std::vector<SegmentRow>& rows) const {
-    return with_effects(rows, effects_);
+  [[nodiscard]] std::vector<estimation::SegmentRow> moved(
+      const std::vector<estimation::SegmentRow>& rows) const {
+    return estimation::with_effects(rows, effects_);
   }
 
  private:
   const MotionRows& drive_;
-  std::vector<DrivePattern> effects_;  ///< all of them together
+  std::vector<effects::DrivePattern> effects_;  ///< all of them together
 };
 
 /// Travel and turn that each row lacks, as white noise of the wheels would have it that adds up to
 /// what the whole lacks: Q A' (sum A Q A')^-1 e, with A the row's influence and Q its share of
 /// noise.
-std::vector<Vector2> estimated_noise(const std::vector<SegmentRow>& rows, const MotionRows& drive,
-                                     const Robot& robot, const std::vector<Matrix4>& influences,
+std::vector<Vector2> estimated_noise(const std::vector<estimation::SegmentRow>& rows,
+                                     const MotionRows& drive, const Robot& robot,
+                                     const std::vector<estimation::Matrix4>& influences,
                                      const Eigen::Vector3d& lacking) {
   constexpr double kLeastShare = 1e-6;  // m: rows at rest may err too
   // Beside what wheels do: a wheel that hardly turns would have to turn again and again to bring a
@@ -56,7 +59,7 @@ std::vector<Vector2> estimated_noise(const std::vector<SegmentRow>& rows, const 
     Influence A;
     A.col(0) = influences[k].block<3, 1>(0, 0);
     A.col(1) = influences[k].block<3, 1>(0, 2);
-    const WheelTravel own = rows[k].part * own_travel(drive, rows[k].row, robot);
+    const WheelTravel own = rows[k].part * drive::own_travel(drive, rows[k].row, robot);
     const ArcNoise wheels =
         wheel_arc_noise({std::abs(own.left) + kLeastShare, std::abs(own.right) + kLeastShare},
                         robot.wheelbase, {1.0, 1.0});
@@ -87,19 +90,20 @@ struct FittedRow {
 
 /// The rows that lie between two nodes.
 std::vector<FittedRow> rows_between(const MotionRows& drive, const Robot& robot,
-                                    const Reckoner& reckoner, const PoseNode& from,
-                                    const Pose& at_from, const PoseNode& to, const Pose& at_to) {
+                                    const Reckoner& reckoner, const estimation::PoseNode& from,
+                                    const Pose& at_from, const estimation::PoseNode& to,
+                                    const Pose& at_to) {
   constexpr int kRounds = 3;  // the noise bends the path on which it acts
-  std::vector<SegmentRow> rows = segment_rows(drive, from.t, to.t);
+  std::vector<estimation::SegmentRow> rows = estimation::segment_rows(drive, from.t, to.t);
   const Pose wanted = relative(at_from, at_to);
   std::vector<Vector2> missing(rows.size(), Vector2::Zero());
   for (int round = 0; round < kRounds; ++round) {
-    const std::vector<SegmentRow> moved = reckoner.moved(rows);
-    const Pose reached = segment_motion(moved).displacement;
+    const std::vector<estimation::SegmentRow> moved = reckoner.moved(rows);
+    const Pose reached = estimation::segment_motion(moved).displacement;
     const Eigen::Vector3d lacking(wanted.x - reached.x, wanted.y - reached.y,
                                   wrap_angle(wanted.heading - reached.heading));
     const std::vector<Vector2> noise =
-        estimated_noise(rows, drive, robot, row_influences(moved), lacking);
+        estimated_noise(rows, drive, robot, estimation::row_influences(moved), lacking);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const Vector2 own = rows[k].part * noise[k];
       rows[k].path += own[0];
@@ -109,7 +113,7 @@ std::vector<FittedRow> rows_between(const MotionRows& drive, const Robot& robot,
   }
   Pose pose = at_from;
   std::vector<Pose> reached;
-  for (const SegmentRow& row : rows) {
+  for (const estimation::SegmentRow& row : rows) {
     pose = compose(pose, reckoner.motion(row));
     reached.push_back(pose);
   }
@@ -130,7 +134,8 @@ std::vector<FittedRow> rows_between(const MotionRows& drive, const Robot& robot,
 }
 
 /// Per row; empty without a gyro.
-std::vector<double> excesses(const MotionRows& drive, const std::vector<DrivePattern>& effects) {
+std::vector<double> excesses(const MotionRows& drive,
+                             const std::vector<effects::DrivePattern>& effects) {
   std::vector<double> result;
   result.reserve(drive.gyro.size());
   for (const GyroShare& one : drive.gyro) result.push_back(one.excess);
@@ -153,9 +158,11 @@ Pose before(const Pose& end, const Pose& motion) {
 }  // namespace
 
 std::vector<SessionPath> fitted_paths(const std::vector<DrivenRecording>& recordings,
-                                      const Robot& robot, const RecordingProblem& problem,
-                                      const EffectParameters& border,
-                                      const Eigen::VectorXd& offsets, const RecordingState& state) {
+                                      const Robot& robot,
+                                      const estimation::RecordingProblem& problem,
+                                      const estimation::EffectParameters& border,
+                                      const Eigen::VectorXd& offsets,
+                                      const estimation::RecordingState& state) {
   std::vector<SessionPath> paths(recordings.size());
   std::vector<int> first(recordings.size(), -1);
   std::vector<int> last(recordings.size(), -1);
@@ -166,22 +173,23 @@ std::vector<SessionPath> fitted_paths(const std::vector<DrivenRecording>& record
   }
   for (std::size_t s = 0; s < recordings.size(); ++s) {
     const MotionRows& drive = recordings[s].drive;
-    std::vector<DrivePattern> effects = summed_patterns_of(border, offsets, s);
+    std::vector<effects::DrivePattern> effects = estimation::summed_patterns_of(border, offsets, s);
     SessionPath& path = paths[s];
     path.ends.resize(drive.rows());
     path.missing.assign(drive.rows(), Vector2::Zero());
     path.excess = excesses(drive, effects);
     const Reckoner reckoner(drive, std::move(effects));
     if (first[s] < 0) continue;
-    const PoseNode& first_node = problem.poses[idx(first[s])];
+    const estimation::PoseNode& first_node = problem.poses[idx(first[s])];
     path.start = before(state.poses[idx(first[s])], reckoner.motion(drive.start(), first_node.t));
     Pose pose = path.start;
-    for (const SegmentRow& row : segment_rows(drive, drive.start(), first_node.t)) {
+    for (const estimation::SegmentRow& row :
+         estimation::segment_rows(drive, drive.start(), first_node.t)) {
       pose = compose(pose, reckoner.motion(row));
       path.ends[row.row] = pose;
     }
     std::vector<std::vector<FittedRow>> between(idx(last[s] - first[s]));
-    parallel_for(between.size(), [&](std::size_t j) {
+    parallel::parallel_for(between.size(), [&](std::size_t j) {
       const std::size_t k = idx(first[s]) + j;
       between[j] = rows_between(drive, robot, reckoner, problem.poses[k], state.poses[k],
                                 problem.poses[k + 1], state.poses[k + 1]);
@@ -193,8 +201,8 @@ std::vector<SessionPath> fitted_paths(const std::vector<DrivenRecording>& record
       }
     }
     pose = state.poses[idx(last[s])];
-    for (const SegmentRow& row :
-         segment_rows(drive, problem.poses[idx(last[s])].t, drive.t.back())) {
+    for (const estimation::SegmentRow& row :
+         estimation::segment_rows(drive, problem.poses[idx(last[s])].t, drive.t.back())) {
       pose = compose(pose, reckoner.motion(row));
       path.ends[row.row] = pose;
     }
@@ -203,7 +211,7 @@ std::vector<SessionPath> fitted_paths(const std::vector<DrivenRecording>& record
 }
 
 Pose pose_at(const MotionRows& drive, const SessionPath& path, double t) {
-  const std::size_t row = row_at(drive, t);
+  const std::size_t row = drive::row_at(drive, t);
   const Pose& from = row == 0 ? path.start : path.ends[row - 1];
   const Pose& to = path.ends[row];
   const double begin = row == 0 ? drive.start() : drive.t[row - 1];
@@ -213,4 +221,4 @@ Pose pose_at(const MotionRows& drive, const SessionPath& path, double t) {
           from.heading + share * turn};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

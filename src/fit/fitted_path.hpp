@@ -13,7 +13,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 struct SessionPath {
   Pose start;              ///< at the drive's start; map frame, heading not wrapped
@@ -30,12 +30,12 @@ struct SessionPath {
 /// the first node and after the last the robot is reckoned from there.
 [[nodiscard]] std::vector<SessionPath> fitted_paths(const std::vector<DrivenRecording>& recordings,
                                                     const Robot& robot,
-                                                    const RecordingProblem& problem,
-                                                    const EffectParameters& border,
+                                                    const estimation::RecordingProblem& problem,
+                                                    const estimation::EffectParameters& border,
                                                     const Eigen::VectorXd& offsets,
-                                                    const RecordingState& state);
+                                                    const estimation::RecordingState& state);
 
 /// The pose at time t, along the row.
 [[nodiscard]] Pose pose_at(const MotionRows& drive, const SessionPath& path, double t);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <iterator>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 EffectColumns columns_of_common(const FitState& fit) {
@@ -22,15 +22,16 @@ EffectColumns columns_of_common(const FitState& fit) {
       values.push_back(effect.coefficients[k]);
     }
   }
-  columns.border = common_error_columns(fit.recordings, fit.model.robot,
-                                        Eigen::VectorXd::Map(values.data(), std::ssize(values)));
+  columns.border = estimation::common_error_columns(
+      fit.recordings, fit.model.robot, Eigen::VectorXd::Map(values.data(), std::ssize(values)));
   return columns;
 }
 
 /// The last of those that the data tell too little of gives way: the others may do without it.
-bool hold_the_uncertain(const FitTask& task, const RecordingSystem& system, Fitting& now) {
+bool hold_the_uncertain(const FitTask& task, const estimation::RecordingSystem& system,
+                        Fitting& now) {
   const Eigen::MatrixXd covariance = system.coefficient_covariance();
-  const std::vector<int> unknown = unknown_coefficients(now.fit.columns.border);
+  const std::vector<int> unknown = estimation::unknown_coefficients(now.fit.columns.border);
   for (std::size_t k = unknown.size(); k-- > 0;) {
     const Coefficient& one = now.fit.columns.coefficients[idx(unknown[k])];
     const Effect& effect = now.fit.model.effects[one.effect];
@@ -61,12 +62,12 @@ void take_columns(const FitTask& task, Fitting& now) {
   fit.columns = effect_columns(effects, ShapeContext(fit.recordings, fit.model.robot, fit.paths));
   for (std::size_t k = 0; k < fit.columns.border.size(); ++k) {
     const Coefficient& one = fit.columns.coefficients[k];
-    EffectPattern& column = fit.columns.border[k];
+    estimation::EffectPattern& column = fit.columns.border[k];
     if (is_laid_out(effects[one.effect].channel)) {
       column.reference = now.laid_out[one.effect].coefficients[one.place];
     }
     if (now.is_common(one.effect)) {
-      column.prior_sd = common_error_sd(effects[one.effect]);
+      column.prior_sd = estimation::common_error_sd(effects[one.effect]);
     } else if (!task.options.fit_effects || now.not_fitted[one.effect][one.place]) {
       column.held = coefficient_at(fit, k);
     }
@@ -75,7 +76,7 @@ void take_columns(const FitTask& task, Fitting& now) {
 
 Eigen::VectorXd unknown_values(const FitState& fit) {
   std::vector<double> values;
-  for (const int k : unknown_coefficients(fit.columns.border)) {
+  for (const int k : estimation::unknown_coefficients(fit.columns.border)) {
     values.push_back(coefficient_at(fit, idx(k)));
   }
   return Eigen::VectorXd::Map(values.data(), std::ssize(values));
@@ -94,21 +95,21 @@ void hold_coefficient(const FitTask& task, int column, NotFitted why, double unc
 /// scale. The one added last gives way.
 bool hold_one(const FitTask& task, Fitting& now) {
   const FitState& fit = now.fit;
-  const std::vector<int> free = unknown_coefficients(fit.columns.border);
+  const std::vector<int> free = estimation::unknown_coefficients(fit.columns.border);
   if (free.empty()) return false;
   const NoiseFree clean(fit.recordings, fit.model, fit.problem, fit.columns.border, offsets_of(fit),
                         fit.adjustment.state);
-  RecordingSystem system(clean.problem, clean.border);
+  estimation::RecordingSystem system(clean.problem, clean.border);
   system.linearise(clean.state, unknown_values(fit));
   try {
     system.factorise();
-  } catch (const NotPositiveDefinite& error) {
+  } catch (const linalg::NotPositiveDefinite& error) {
     if (error.column() >= 0) throw;
   }
-  const std::vector<int> lost = find_undetermined(system);
+  const std::vector<int> lost = estimation::find_undetermined(system);
   if (lost.empty()) return hold_the_uncertain(task, system, now);
   hold_coefficient(task, free[idx(lost.back())], NotFitted::undetermined, 0.0, now);
   return true;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

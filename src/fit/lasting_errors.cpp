@@ -27,17 +27,18 @@ struct SeenError {
 };
 
 /// Whitened errors by session and landmark, in order of time.
-std::map<std::pair<int, int>, std::vector<SeenError>> errors_of(const FitState& fit) {
+std::map<std::pair<int, int>, std::vector<SeenError>> errors_of(const fitting::FitState& fit) {
   std::map<std::pair<int, int>, std::vector<SeenError>> result;
   std::vector<bool> out(fit.problem.measurements.size(), false);
   for (const int k : fit.adjustment.left_out) out[idx(k)] = true;
-  const Eigen::VectorXd offsets = offsets_of(fit);
+  const Eigen::VectorXd offsets = fitting::offsets_of(fit);
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
-    const Measurement& one = fit.problem.measurements[k];
-    if (!is_sighting(one) || !begins_with(one, "range") || out[k]) continue;
-    const MeasurementRows rows = measurement_rows(fit.problem, one, fit.adjustment.state, one.value,
-                                                  view_of(fit.columns.border, offsets, one));
-    const Vector4 white = one.whitener * rows.error;
+    const estimation::Measurement& one = fit.problem.measurements[k];
+    if (!estimation::is_sighting(one) || !estimation::begins_with(one, "range") || out[k]) continue;
+    const estimation::MeasurementRows rows =
+        estimation::measurement_rows(fit.problem, one, fit.adjustment.state, one.value,
+                                     estimation::view_of(fit.columns.border, offsets, one));
+    const estimation::Vector4 white = one.whitener * rows.error;
     result[{one.session, one.to}].push_back({fit.problem.time_of(one.from), white.head<2>()});
   }
   return result;

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMostWindows = 400;  // per recording, evenly spread
 
 /// Mean square of the position's error.
-double square_of(const Matrix4& covariance) {
+double square_of(const estimation::Matrix4& covariance) {
   return covariance.topLeftCorner<2, 2>().trace();
 }
 
@@ -27,7 +27,7 @@ double square_of(const Matrix4& covariance) {
 struct Window {
   const MotionRows& drive;
   const Robot& robot;
-  std::vector<SegmentRow> rows;
+  std::vector<estimation::SegmentRow> rows;
   double from = 0.0;                ///< s
   double way = 0.0;                 ///< m, from the recording's start
   const std::vector<double>& ends;  ///< of legs, s
@@ -36,34 +36,37 @@ struct Window {
 /// What one white field of the noise makes, all others silent.
 double white_square(const Window& window, const Noise& noise,
                     const std::vector<double Noise::*>& members) {
-  Noise alone = silent_noise();
+  Noise alone = fitting::silent_noise();
   for (double Noise::*member : members) alone.*member = noise.*member;
-  const Matrix4 floor = segment_covariance(window.drive, window.rows, window.robot, silent_noise());
-  return square_of(segment_covariance(window.drive, window.rows, window.robot, alone) - floor);
+  const estimation::Matrix4 floor = estimation::segment_covariance(
+      window.drive, window.rows, window.robot, fitting::silent_noise());
+  return square_of(estimation::segment_covariance(window.drive, window.rows, window.robot, alone) -
+                   floor);
 }
 
 double process_square(const Window& window, const NoiseProcess& process) {
-  if (acts_on(process.channel) != ActsOn::drives) return 0.0;
-  const std::vector<Matrix4> influences = row_influences(window.rows);
-  const std::vector<Vector4> c =
-      unit_columns(window.drive, window.rows, influences, process.channel, window.robot);
-  Matrix4 unit = Matrix4::Zero();
+  if (effects::acts_on(process.channel) != effects::ActsOn::drives) return 0.0;
+  const std::vector<estimation::Matrix4> influences = estimation::row_influences(window.rows);
+  const std::vector<estimation::Vector4> c = estimation::unit_columns(
+      window.drive, window.rows, influences, process.channel, window.robot);
+  estimation::Matrix4 unit = estimation::Matrix4::Zero();
   if (is_chain(process.process)) {
-    const ProcessMoments m =
-        process_moments(window.rows, c, process.process, process.length, false);
+    const estimation::ProcessMoments m =
+        estimation::process_moments(window.rows, c, process.process, process.length, false);
     double start = 1.0;
     if (process.process == ProcessKind::walk_in_t) start = window.from - window.drive.start();
     if (process.process == ProcessKind::walk_in_distance) start = window.way;
     unit = m.uu + start * m.by_start * m.by_start.transpose();
   } else if (process.process == ProcessKind::white) {
-    for (const Vector4& row : c) unit += row * row.transpose();
+    for (const estimation::Vector4& row : c) unit += row * row.transpose();
   } else if (process.process == ProcessKind::per_leg) {
-    for (const auto& [leg, sum] : sums_by_leg(window.rows, c, window.from, window.ends)) {
+    for (const auto& [leg, sum] :
+         estimation::sums_by_leg(window.rows, c, window.from, window.ends)) {
       unit += sum * sum.transpose();
     }
   } else {
-    Vector4 sum = Vector4::Zero();
-    for (const Vector4& row : c) sum += row;
+    estimation::Vector4 sum = estimation::Vector4::Zero();
+    for (const estimation::Vector4& row : c) sum += row;
     unit = sum * sum.transpose();
   }
   return process.sd * process.sd * square_of(unit);
@@ -88,7 +91,7 @@ class Budget {
     gyro_ = gyro_ || !window.drive.gyro.empty() || !window.drive.yaw_rate.empty();
     if (!window.drive.gyro.empty()) add("gyro", white_square(window, noise, {&Noise::gyro}));
     for (const NoiseProcess& one : noise.processes) {
-      add(name_of_source(one), process_square(window, one));
+      add(fitting::name_of_source(one), process_square(window, one));
     }
     ++windows_;
   }
@@ -165,20 +168,21 @@ void add_windows(const DrivenRecording& recording, const Robot& robot, double ho
                  Budget& budget) {
   const MotionRows& drive = recording.drive;
   if (drive.rows() == 0) return;
-  const std::vector<double> ends = ends_of_legs(recording);
+  const std::vector<double> ends = estimation::ends_of_legs(recording);
   const std::vector<Stretch> all = horizon > 0.0 ? stretches(drive, horizon) : legs(ends);
   const std::size_t stride = std::max<std::size_t>(1, all.size() / kMostWindows);
   double way = 0.0;
   double reached = drive.start();
   for (std::size_t k = 0; k < all.size(); k += stride) {
-    for (const SegmentRow& row : segment_rows(drive, reached, all[k].from)) {
+    for (const estimation::SegmentRow& row :
+         estimation::segment_rows(drive, reached, all[k].from)) {
       way += std::abs(row.path);
     }
     reached = all[k].from;
-    const Window window{drive,       robot, segment_rows(drive, all[k].from, all[k].to),
+    const Window window{drive,       robot, estimation::segment_rows(drive, all[k].from, all[k].to),
                         all[k].from, way,   ends};
     double driven = 0.0;
-    for (const SegmentRow& row : window.rows) driven += std::abs(row.path);
+    for (const estimation::SegmentRow& row : window.rows) driven += std::abs(row.path);
     if (window.rows.empty() || (horizon == 0.0 && driven < kDefaultMinDrive)) continue;
     budget.add(window);
   }
@@ -189,7 +193,7 @@ void add_windows(const DrivenRecording& recording, const Robot& robot, double ho
 std::vector<NoiseBudget> noise_budget(const std::vector<DrivenRecording>& recordings,
                                       const Model& model, const std::vector<double>& horizons) {
   std::vector<std::optional<NoiseBudget>> budgets(horizons.size());
-  parallel_for(horizons.size(), [&](std::size_t k) {
+  parallel::parallel_for(horizons.size(), [&](std::size_t k) {
     const double horizon = horizons[k];
     if (!(horizon >= 0.0)) throw std::invalid_argument("a horizon has to be 0 s (a leg) or more");
     Budget budget(model);

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 NoiseComponent white(const char* name, const char* unit, std::vector<double Noise::*> members,
@@ -50,9 +50,9 @@ double reading_sd(const Noise& noise, std::string_view key) {
   return 0.0;
 }
 
-std::set<std::string_view> noises_in(const RecordingProblem& problem) {
+std::set<std::string_view> noises_in(const estimation::RecordingProblem& problem) {
   std::set<std::string_view> found;
-  for (const Measurement& one : problem.measurements) {
+  for (const estimation::Measurement& one : problem.measurements) {
     for (Eigen::Index row = 0; row < one.rows && !one.own_sd; ++row) {
       found.insert(one.kind->noise(row));
     }
@@ -184,4 +184,4 @@ void take_into(Noise& noise, const NoiseComponent& component, double sd, double 
   noise.processes.push_back(process);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

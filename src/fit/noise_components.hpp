@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 struct NoiseComponent {
   std::string name;
@@ -35,7 +35,7 @@ struct ReadingKey {
 [[nodiscard]] double reading_sd(const Noise& noise, std::string_view key);
 
 /// Keys of the noise that measurements have; of those whose rows state none themselves.
-[[nodiscard]] std::set<std::string_view> noises_in(const RecordingProblem& problem);
+[[nodiscard]] std::set<std::string_view> noises_in(const estimation::RecordingProblem& problem);
 
 /// All zero.
 [[nodiscard]] Noise silent_noise();
@@ -59,4 +59,4 @@ struct ReadingKey {
 /// Noise with a component's sd (and length).
 void take_into(Noise& noise, const NoiseComponent& component, double sd, double length);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

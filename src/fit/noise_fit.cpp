@@ -15,6 +15,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace fitting;
+
 namespace {
 
 /// What is asked, the same for all stages.
@@ -111,7 +113,8 @@ double p_value_of(const Question& asked, double gain, const NoiseComponent& one)
   for (std::size_t k = 0; k < all.size(); ++k) {
     kinds += k == 0 || all[k].name != all[k - 1].name ? 1U : 0U;
   }
-  return std::min(1.0, 0.5 * static_cast<double>(kinds) * chi2_p_value(std::max(gain, 0.0), dof));
+  return std::min(
+      1.0, 0.5 * static_cast<double>(kinds) * statistics::chi2_p_value(std::max(gain, 0.0), dof));
 }
 
 /// What an earlier fit took in, perhaps for an effect that it lacked, goes where it is no longer
@@ -316,6 +319,10 @@ FittedNoise report(const Question& asked, const NoiseMix& mix, double stated) {
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::fitting {
+
 FittedNoise fit_noise(NoiseReml& reml, const Eigen::MatrixXd& nuisance,
                       const NoiseFitOptions& options) {
   reml.set_nuisance(nuisance);
@@ -353,6 +360,10 @@ double minus_two_log_under(NoiseReml& reml, const Noise& noise, const Eigen::Mat
   reml.choose(components);
   return reml.minus_two_log_at_best(sizes);
 }
+
+}  // namespace trussmap::fitting
+
+namespace trussmap {
 
 FittedNoise fit_noise(const ModelFit& fit, const NoiseFitOptions& options) {
   NoiseReml reml(*fit.state, fit.model.noise);

@@ -7,7 +7,7 @@
 #include "fit/noise_reml.hpp"
 #include "trussmap/noise_fit.hpp"
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 /// Sizes are kept as stated where they can be, and start from those of the fit. `nuisance`:
 /// whitened columns, rows as of the fit, of what else may be missing: noise is what
@@ -20,4 +20,4 @@ namespace trussmap {
 [[nodiscard]] double minus_two_log_under(NoiseReml& reml, const Noise& noise,
                                          const Eigen::MatrixXd& columns);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -17,24 +17,25 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 /// The effects' columns in a context, held and referred as in the fit.
-[[nodiscard]] EffectParameters border_as_fitted(const Model& model, const ShapeContext& context,
-                                                const EffectParameters& fitted);
+[[nodiscard]] estimation::EffectParameters border_as_fitted(
+    const Model& model, const ShapeContext& context, const estimation::EffectParameters& fitted);
 
 struct NoiseFree {
   /// `border` and the `offsets` of its coefficients are those of the fit. Keeps a reference to the
   /// recordings.
   NoiseFree(const std::vector<DrivenRecording>& recordings, const Model& model,
-            const RecordingProblem& fitted, const EffectParameters& fitted_border,
-            const Eigen::VectorXd& offsets, const RecordingState& fitted_state);
+            const estimation::RecordingProblem& fitted,
+            const estimation::EffectParameters& fitted_border, const Eigen::VectorXd& offsets,
+            const estimation::RecordingState& fitted_state);
 
-  RecordingState state;
+  estimation::RecordingState state;
   std::vector<SessionPath> paths;
-  RecordingProblem problem;
+  estimation::RecordingProblem problem;
   ShapeContext context;
-  EffectParameters border;  ///< held and referred as in the fit
+  estimation::EffectParameters border;  ///< held and referred as in the fit
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

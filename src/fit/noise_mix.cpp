@@ -11,7 +11,7 @@
 #include <limits>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 constexpr double kNear = 5e-7;  // of a logarithm: at its limit
@@ -23,7 +23,7 @@ double scale_of(const NoiseComponent& one) {
 
 /// Of a matrix that may have slightly negative eigenvalues.
 Eigen::MatrixXd square_root(const Eigen::MatrixXd& matrix) {
-  const SymmetricModes modes = symmetric_modes(matrix);
+  const linalg::SymmetricModes modes = linalg::symmetric_modes(matrix);
   return modes.eigenvectors * modes.eigenvalues.cwiseMax(0.0).cwiseSqrt().asDiagonal() *
          modes.eigenvectors.transpose();
 }
@@ -50,7 +50,7 @@ std::vector<bool> NoiseMix::free() const {
 }
 
 std::string white_source_of(const NoiseComponent& process) {
-  return std::string(record_of(process.process.channel).noise_source);
+  return std::string(effects::record_of(process.process.channel).noise_source);
 }
 
 NoiseReml::Sizes sizes_of(const NoiseMix& mix) {
@@ -72,7 +72,7 @@ void choose(NoiseReml& reml, const NoiseMix& mix) {
 double deviance(NoiseReml& reml, const NoiseReml::Sizes& sizes) {
   try {
     return reml.minus_two_log(sizes);
-  } catch (const NotPositiveDefinite&) {
+  } catch (const linalg::NotPositiveDefinite&) {
     return std::numeric_limits<double>::infinity();
   }
 }
@@ -82,8 +82,8 @@ NoiseExtents extents_of(const FitState& fit) {
   for (const DrivenRecording& one : fit.recordings) {
     extents.time += one.drive.rows() > 0 ? one.drive.t.back() - one.drive.start() : 0.0;
   }
-  for (const std::vector<SegmentRow>& rows : fit.problem.segments) {
-    for (const SegmentRow& row : rows) extents.way += std::abs(row.path);
+  for (const std::vector<estimation::SegmentRow>& rows : fit.problem.segments) {
+    for (const estimation::SegmentRow& row : rows) extents.way += std::abs(row.path);
   }
   return extents;
 }
@@ -107,7 +107,8 @@ NoiseLogarithms::Range NoiseLogarithms::range_of_length(const NoiseMember& membe
                                                         const NoiseExtents& extents) {
   const NoiseProcess& process = member.component.process;
   const bool in_time = process.process == ProcessKind::correlated_in_t;
-  const double limit = acts_on(process.channel) == ActsOn::views ? kLongestOfViews : kLongest;
+  const double limit =
+      effects::acts_on(process.channel) == effects::ActsOn::views ? kLongestOfViews : kLongest;
   const double most = std::min(limit, kLongestShare * (in_time ? extents.time : extents.way));
   return {std::log(kShortest), std::log(std::max(most, 2.0 * kShortest))};
 }
@@ -204,7 +205,7 @@ Eigen::VectorXd standard_errors(NoiseReml& reml, const NoiseLogarithms& logarith
   const Eigen::MatrixXd S = 0.5 * curvatures(scatter, x);
   const Eigen::MatrixXd both = square_root(H - S) * square_root(S);
   const Eigen::MatrixXd J = H + both + both.transpose();
-  const SymmetricModes modes = symmetric_modes(H);
+  const linalg::SymmetricModes modes = linalg::symmetric_modes(H);
   const Eigen::VectorXd information = modes.eigenvalues.cwiseMax(kLeastInformation);
   const Eigen::MatrixXd inverse =
       modes.eigenvectors * information.cwiseInverse().asDiagonal() * modes.eigenvectors.transpose();
@@ -212,4 +213,4 @@ Eigen::VectorXd standard_errors(NoiseReml& reml, const NoiseLogarithms& logarith
   return variances.cwiseMax(inverse.diagonal()).cwiseSqrt();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

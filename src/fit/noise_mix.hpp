@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 struct NoiseMember {
   NoiseComponent component;
@@ -90,4 +90,4 @@ class NoiseLogarithms {
 /// Standard errors of the logarithms at the likeliest.
 [[nodiscard]] Eigen::VectorXd standard_errors(NoiseReml& reml, const NoiseLogarithms& logarithms);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -13,25 +13,26 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 constexpr double kExactSd = 1e-6;  // m and rad
 
 }  // namespace
 
-std::vector<Matrix4> NoiseReml::unit_covariances(const NoiseComponent& component) const {
+std::vector<estimation::Matrix4> NoiseReml::unit_covariances(
+    const NoiseComponent& component) const {
   Noise unit = silent_noise();
   for (double Noise::*member : component.white) {
     unit.*member = component.stated > 0.0 ? stated_.*member / component.stated : 1.0;
   }
-  std::vector<Matrix4> result;
+  std::vector<estimation::Matrix4> result;
   result.reserve(fit_.problem.measurements.size());
-  for (const Measurement& one : fit_.problem.measurements) {
-    Matrix4 added = Matrix4::Zero();
-    if (is_segment(one)) {
+  for (const estimation::Measurement& one : fit_.problem.measurements) {
+    estimation::Matrix4 added = estimation::Matrix4::Zero();
+    if (estimation::is_segment(one)) {
       added = segment_covariance(one, unit);
-    } else if (is_driven(one)) {
+    } else if (estimation::is_driven(one)) {
       added = gyro_covariance(one, unit);
     } else if (!one.own_sd) {
       for (Eigen::Index row = 0; row < one.rows; ++row) {
@@ -43,8 +44,9 @@ std::vector<Matrix4> NoiseReml::unit_covariances(const NoiseComponent& component
   return result;
 }
 
-Matrix4 NoiseReml::segment_covariance(const Measurement& one, const Noise& noise) const {
-  Matrix4 result = Matrix4::Zero();
+estimation::Matrix4 NoiseReml::segment_covariance(const estimation::Measurement& one,
+                                                  const Noise& noise) const {
+  estimation::Matrix4 result = estimation::Matrix4::Zero();
   const Rows& rows = rows_[one.source];
   if (one.rows == 4) result(3, 3) = noise.compass * noise.compass / rows.readings;
   const bool moves = noise.left + noise.right + noise.heading_per_s + noise.heading_per_rad +
@@ -52,24 +54,25 @@ Matrix4 NoiseReml::segment_covariance(const Measurement& one, const Noise& noise
                      0.0;
   if (!moves) return result;
   const MotionRows& drive = fit_.recordings[idx(one.session)].drive;
-  const std::vector<SegmentRow>& parts = fit_.problem.segments[one.source];
+  const std::vector<estimation::SegmentRow>& parts = fit_.problem.segments[one.source];
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    const SegmentRow& row = parts[k];
+    const estimation::SegmentRow& row = parts[k];
     const Matrix3 Q =
-        row_covariance(drive, row.row, row.part, row.duration, fit_.model.robot, noise);
+        odometry::row_covariance(drive, row.row, row.part, row.duration, fit_.model.robot, noise);
     result += rows.H[k] * Q * rows.H[k].transpose();
   }
   return result;
 }
 
-Matrix4 NoiseReml::gyro_covariance(const Measurement& one, const Noise& noise) const {
-  Matrix4 result = Matrix4::Zero();
+estimation::Matrix4 NoiseReml::gyro_covariance(const estimation::Measurement& one,
+                                               const Noise& noise) const {
+  estimation::Matrix4 result = estimation::Matrix4::Zero();
   const MotionRows& drive = fit_.recordings[idx(one.session)].drive;
-  const std::vector<SegmentRow>& rows = fit_.problem.segments[one.source];
-  const std::vector<Vector4>& weights = fit_.problem.gyro_weights[one.source];
+  const std::vector<estimation::SegmentRow>& rows = fit_.problem.segments[one.source];
+  const std::vector<estimation::Vector4>& weights = fit_.problem.gyro_weights[one.source];
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const double variance = excess_variance(drive, rows[k].row, rows[k].part, rows[k].duration,
-                                            fit_.model.robot, noise);
+    const double variance = odometry::excess_variance(drive, rows[k].row, rows[k].part,
+                                                      rows[k].duration, fit_.model.robot, noise);
     if (std::isfinite(variance)) result += variance * weights[k] * weights[k].transpose();
   }
   return result;
@@ -83,18 +86,18 @@ NoiseReml::NoiseReml(const FitState& fit, const Noise& stated)
       left_out_(fit.problem.measurements.size(), false),
       scatter_(fit) {
   for (const int k : fit.adjustment.left_out) left_out_[idx(k)] = true;
-  const std::vector<std::vector<DrivePattern>> effects =
-      summed_patterns(fit.columns.border, offsets_of(fit), fit.recordings.size());
+  const std::vector<std::vector<effects::DrivePattern>> effects =
+      estimation::summed_patterns(fit.columns.border, offsets_of(fit), fit.recordings.size());
   rows_.resize(problem_.segments.size());
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-    const Measurement& one = problem_.measurements[k];
-    if (!is_segment(one)) continue;
-    rows_[one.source] = {believed_noise(problem_, k, fit.recordings, fit.model,
-                                        effects[idx(one.session)], fit.adjustment.state)
+    const estimation::Measurement& one = problem_.measurements[k];
+    if (!estimation::is_segment(one)) continue;
+    rows_[one.source] = {estimation::believed_noise(problem_, k, fit.recordings, fit.model,
+                                                    effects[idx(one.session)], fit.adjustment.state)
                              .H,
-                         readings_of(problem_.segments[one.source])};
+                         estimation::readings_of(problem_.segments[one.source])};
   }
-  for (Measurement& one : problem_.measurements) {
+  for (estimation::Measurement& one : problem_.measurements) {
     fixed_.push_back(one.kind->fixed_covariance(one, stated_));
     // Variances are those of the errors themselves, whatever their tails.
     if (one.tails > 0.0) one.value_offset.setZero();
@@ -106,14 +109,14 @@ void NoiseReml::set_nuisance(const Eigen::MatrixXd& nuisance) {
   plain_nuisance_.resize(0, nuisance.cols());
   if (nuisance.cols() == 0) return;
   int rows = 0;
-  for (const Measurement& one : fit_.problem.measurements) rows += one.rows;
+  for (const estimation::Measurement& one : fit_.problem.measurements) rows += one.rows;
   plain_nuisance_ = nuisance.topRows(rows);
   int at = 0;
-  for (const Measurement& one : fit_.problem.measurements) {
+  for (const estimation::Measurement& one : fit_.problem.measurements) {
     const Eigen::MatrixXd colour = one.whitener.topLeftCorner(one.rows, one.rows).inverse();
     plain_nuisance_.middleRows(at, one.rows) =
         (colour * plain_nuisance_.middleRows(at, one.rows)).eval() /
-        std::sqrt(tail_information(one.tails, one.rows));
+        std::sqrt(estimation::tail_information(one.tails, one.rows));
     at += one.rows;
   }
 }
@@ -140,8 +143,8 @@ void NoiseReml::choose(const std::vector<NoiseComponent>& components) {
       units_.push_back(known->second);
     }
   }
-  put_processes(problem_, laid_, std::vector<double>(laid_.size(), 1.0));
-  system_ = std::make_unique<RecordingSystem>(problem_, fit_.columns.border);
+  estimation::put_processes(problem_, laid_, std::vector<double>(laid_.size(), 1.0));
+  system_ = std::make_unique<estimation::RecordingSystem>(problem_, fit_.columns.border);
   std::vector<double> weights(problem_.measurements.size(), 1.0);
   for (std::size_t k = 0; k < weights.size(); ++k) weights[k] = left_out_[k] ? 0.0 : 1.0;
   system_->set_weights(weights);
@@ -162,12 +165,12 @@ void NoiseReml::whiten(const Sizes& sizes) {
     laid_[p] = layer_.lay(one.process.channel, one.process.process, sizes.length[c]);
     laid_length_[p] = sizes.length[c];
   }
-  put_processes(problem_, laid_, sds);
+  estimation::put_processes(problem_, laid_, sds);
   nuisance_.resize(system_->rows(), plain_nuisance_.cols());
   nuisance_.setZero();
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-    Measurement& one = problem_.measurements[k];
-    Matrix4 covariance = fixed_[k];
+    estimation::Measurement& one = problem_.measurements[k];
+    estimation::Matrix4 covariance = fixed_[k];
     std::size_t white = 0;
     for (std::size_t c = 0; c < components_.size(); ++c) {
       if (components_[c].lasts()) continue;
@@ -175,7 +178,7 @@ void NoiseReml::whiten(const Sizes& sizes) {
     }
     if (!laid_.empty()) covariance += problem_.within[k];
     covariance.diagonal().array() += kExactSd * kExactSd;
-    one.whitener = whitener_of(covariance, one.rows);
+    one.whitener = estimation::whitener_of(covariance, one.rows);
     if (nuisance_.cols() == 0) continue;
     const int at = system_->first_row(k);
     nuisance_.middleRows(at, one.rows) =
@@ -212,13 +215,13 @@ double NoiseReml::scatter(const Sizes& sizes) {
   return value;
 }
 
-RestrictedLikelihood NoiseReml::likelihood(const Sizes& sizes) {
+estimation::RestrictedLikelihood NoiseReml::likelihood(const Sizes& sizes) {
   whiten(sizes);
   const double within = scatter(sizes);
-  RecordingState at = fit_.adjustment.state;
+  estimation::RecordingState at = fit_.adjustment.state;
   at.noise.resize(0);  // states of other processes, or in other units
-  return restricted_likelihood(*system_, problem_, at, fit_.adjustment.coefficients, nuisance_,
-                               within);
+  return estimation::restricted_likelihood(*system_, problem_, at, fit_.adjustment.coefficients,
+                                           nuisance_, within);
 }
 
 double NoiseReml::minus_two_log(const Sizes& sizes) {
@@ -229,4 +232,4 @@ double NoiseReml::minus_two_log_at_best(const Sizes& sizes) {
   return likelihood(sizes).at_likeliest();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 class NoiseReml {
  public:
@@ -50,12 +50,13 @@ class NoiseReml {
   [[nodiscard]] double scatter(const Sizes& sizes);
 
   /// Problem and system of the last call.
-  [[nodiscard]] const RecordingProblem& problem() const { return problem_; }
-  [[nodiscard]] const RecordingSystem& system() const { return *system_; }
+  [[nodiscard]] const estimation::RecordingProblem& problem() const { return problem_; }
+  [[nodiscard]] const estimation::RecordingSystem& system() const { return *system_; }
   [[nodiscard]] const Eigen::MatrixXd& nuisance() const { return nuisance_; }
-  [[nodiscard]] const ProcessLayer& layer() const { return layer_; }
+  [[nodiscard]] const estimation::ProcessLayer& layer() const { return layer_; }
   /// Covariance per unit of a white component's variance, per measurement.
-  [[nodiscard]] std::vector<Matrix4> unit_covariances(const NoiseComponent& component) const;
+  [[nodiscard]] std::vector<estimation::Matrix4> unit_covariances(
+      const NoiseComponent& component) const;
   [[nodiscard]] bool left_out(std::size_t measurement) const { return left_out_[measurement]; }
 
  private:
@@ -64,34 +65,37 @@ class NoiseReml {
     std::vector<Eigen::Matrix<double, 4, 3>> H;
     int readings = 0;
   };
-  [[nodiscard]] Matrix4 segment_covariance(const Measurement& one, const Noise& noise) const;
-  [[nodiscard]] Matrix4 gyro_covariance(const Measurement& one, const Noise& noise) const;
-  [[nodiscard]] RestrictedLikelihood likelihood(const Sizes& sizes);
+  [[nodiscard]] estimation::Matrix4 segment_covariance(const estimation::Measurement& one,
+                                                       const Noise& noise) const;
+  [[nodiscard]] estimation::Matrix4 gyro_covariance(const estimation::Measurement& one,
+                                                    const Noise& noise) const;
+  [[nodiscard]] estimation::RestrictedLikelihood likelihood(const Sizes& sizes);
   void whiten(const Sizes& sizes);
 
   const FitState& fit_;
   Noise stated_;
-  RecordingProblem problem_;
-  ProcessLayer layer_;
-  std::unique_ptr<RecordingSystem> system_;
+  estimation::RecordingProblem problem_;
+  estimation::ProcessLayer layer_;
+  std::unique_ptr<estimation::RecordingSystem> system_;
   std::vector<bool> left_out_;
   ReadingScatter scatter_;
   struct Scattered {
     ReadingNoise at;
     double value = 0.0;
   };
-  std::vector<Scattered> scattered_;  ///< of late
-  std::vector<Rows> rows_;            ///< per segment
-  std::vector<Matrix4> fixed_;        ///< per measurement
+  std::vector<Scattered> scattered_;        ///< of late
+  std::vector<Rows> rows_;                  ///< per segment
+  std::vector<estimation::Matrix4> fixed_;  ///< per measurement
   std::vector<NoiseComponent> components_;
-  std::vector<std::vector<Matrix4>> units_;  ///< per white component and measurement
-  std::map<std::string, std::vector<Matrix4>> units_known_;  ///< by the components' names
-  std::vector<LaidProcess> laid_;                            ///< per process
+  std::vector<std::vector<estimation::Matrix4>> units_;  ///< per white component and measurement
+  std::map<std::string, std::vector<estimation::Matrix4>>
+      units_known_;                            ///< by the components' names
+  std::vector<estimation::LaidProcess> laid_;  ///< per process
   std::vector<double> laid_length_;
-  std::vector<LaidProcess> laid_before_;  ///< with another length
+  std::vector<estimation::LaidProcess> laid_before_;  ///< with another length
   std::vector<double> laid_length_before_;
   Eigen::MatrixXd plain_nuisance_;  ///< not whitened, rows of the measurements
   Eigen::MatrixXd nuisance_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -12,7 +12,7 @@
 #include <random>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 constexpr Eigen::Index kDraws = 96;
@@ -21,7 +21,7 @@ constexpr std::size_t kFewestStates = 6;
 class Screening {
  public:
   Screening(const FitState& fit, const NoiseReml& reml) : fit_(fit), reml_(reml) {
-    const RecordingSystem& system = reml.system();
+    const estimation::RecordingSystem& system = reml.system();
     const FitProjection P(fit, reml.problem(), system, system.free_of_nodes(reml.nuisance()));
     std::mt19937_64 random(3);
     std::normal_distribution<double> normal;
@@ -36,8 +36,9 @@ class Screening {
   [[nodiscard]] std::optional<Eigen::VectorXd> quadratics(const NoiseComponent& one) const {
     Eigen::VectorXd q;
     if (one.lasts()) {
-      const LaidProcess laid = reml_.layer().lay(one.process.channel, one.process.process,
-                                                 std::max(one.process.length, kLeastProcessLength));
+      const estimation::LaidProcess laid =
+          reml_.layer().lay(one.process.channel, one.process.process,
+                            std::max(one.process.length, kLeastProcessLength));
       if (laid.states.size() < kFewestStates) return std::nullopt;
       q = quadratic(laid, draws_);
     } else {
@@ -49,13 +50,13 @@ class Screening {
 
  private:
   /// y'V y of each column, V of a white component.
-  [[nodiscard]] Eigen::VectorXd quadratic(const std::vector<Matrix4>& added,
+  [[nodiscard]] Eigen::VectorXd quadratic(const std::vector<estimation::Matrix4>& added,
                                           const Eigen::MatrixXd& draws) const {
     Eigen::VectorXd q = Eigen::VectorXd::Zero(draws.cols());
-    const RecordingProblem& problem = reml_.problem();
+    const estimation::RecordingProblem& problem = reml_.problem();
     for (std::size_t k = 0; k < added.size(); ++k) {
       if (added[k].isZero(0.0) || reml_.left_out(k)) continue;
-      const Measurement& one = problem.measurements[k];
+      const estimation::Measurement& one = problem.measurements[k];
       const Eigen::MatrixXd V =
           (one.whitener * added[k] * one.whitener.transpose()).topLeftCorner(one.rows, one.rows);
       const auto y = draws.middleRows(reml_.system().first_row(k), one.rows);
@@ -65,23 +66,24 @@ class Screening {
   }
 
   /// The same of a process: what its states' columns see of y, coloured by their prior.
-  [[nodiscard]] Eigen::VectorXd quadratic(const LaidProcess& laid,
+  [[nodiscard]] Eigen::VectorXd quadratic(const estimation::LaidProcess& laid,
                                           const Eigen::MatrixXd& draws) const {
-    const RecordingProblem& problem = reml_.problem();
+    const estimation::RecordingProblem& problem = reml_.problem();
     const auto states = static_cast<Eigen::Index>(laid.states.size());
     Eigen::MatrixXd u = Eigen::MatrixXd::Zero(states, draws.cols());
     for (std::size_t k = 0; k < laid.terms.size(); ++k) {
       if (laid.terms[k].empty() || reml_.left_out(k)) continue;
-      const Measurement& one = problem.measurements[k];
+      const estimation::Measurement& one = problem.measurements[k];
       const auto y = draws.middleRows(reml_.system().first_row(k), one.rows);
-      for (const NoiseTerm& term : laid.terms[k]) {
-        const Vector4 column = one.whitener * error_by(one, by_view_of(fit_, problem, k), term);
+      for (const estimation::NoiseTerm& term : laid.terms[k]) {
+        const estimation::Vector4 column =
+            one.whitener * estimation::error_by(one, by_view_of(fit_, problem, k), term);
         u.row(term.state) += column.head(one.rows).transpose() * y;
       }
     }
     // u'K u with K = L L', L the chain: z = L eta.
     for (Eigen::Index k = states; k-- > 0;) {
-      const NoiseState& state = laid.states[static_cast<std::size_t>(k)];
+      const estimation::NoiseState& state = laid.states[static_cast<std::size_t>(k)];
       if (state.previous >= 0) u.row(state.previous) += state.keep * u.row(k);
     }
     Eigen::VectorXd q = Eigen::VectorXd::Zero(draws.cols());
@@ -114,7 +116,8 @@ std::vector<ScreenedNoise> screened_noise(const FitState& fit, const NoiseReml& 
   for (const NoiseComponent& one : candidates) {
     std::optional<Eigen::VectorXd> q = screening.quadratics(one);
     if (!q) continue;
-    if (known.cols() > 0) *q -= known * least_squares(known.topRows(kDraws), q->head(kDraws));
+    if (known.cols() > 0)
+      *q -= known * linalg::least_squares(known.topRows(kDraws), q->head(kDraws));
     const double variance =
         q->head(kDraws).squaredNorm() / static_cast<double>(kDraws - 1 - known.cols());
     if (!(variance > 0.0)) continue;
@@ -126,4 +129,4 @@ std::vector<ScreenedNoise> screened_noise(const FitState& fit, const NoiseReml& 
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

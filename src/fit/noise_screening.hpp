@@ -17,7 +17,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 struct ScreenedNoise {
   NoiseComponent component;
@@ -30,4 +30,4 @@ struct ScreenedNoise {
     const FitState& fit, const NoiseReml& reml, const std::vector<NoiseComponent>& candidates,
     const std::vector<NoiseComponent>& estimated);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

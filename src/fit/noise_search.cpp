@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 Eigen::VectorXd slopes(const NoiseLoss& loss, const LikeliestNoise& at) {
@@ -106,4 +106,4 @@ Eigen::MatrixXd curvatures(const NoiseLoss& loss, const Eigen::VectorXd& x) {
   return H;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

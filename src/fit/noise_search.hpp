@@ -14,7 +14,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 using NoiseLoss = std::function<double(const Eigen::VectorXd&)>;
 
@@ -38,4 +38,4 @@ struct LikeliestNoise {
 /// Second derivatives of the loss, by differences.
 [[nodiscard]] Eigen::MatrixXd curvatures(const NoiseLoss& loss, const Eigen::VectorXd& x);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

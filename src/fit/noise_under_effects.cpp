@@ -7,7 +7,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 /// Of a row: forward [m], turn [rad], excess of the gyro [rad].
@@ -27,26 +27,27 @@ std::vector<ConstantEffect> constants_of(const FitState& fit, std::size_t sessio
     const double offset = offsets[static_cast<Eigen::Index>(k)];
     const bool acts = !effect.per_session || one.place == session;
     if (!effect.is_constant() || !acts || offset == 0.0) continue;
-    if (acts_on(effect.channel) == ActsOn::drives) result.push_back({effect.channel, offset});
+    if (effects::acts_on(effect.channel) == effects::ActsOn::drives)
+      result.push_back({effect.channel, offset});
   }
   return result;
 }
 
-RowNoise additions(const std::vector<ConstantEffect>& effects, const RowMotion& row) {
-  DrivePattern sum;
+RowNoise additions(const std::vector<ConstantEffect>& effects, const drive::RowMotion& row) {
+  effects::DrivePattern sum;
   for (const ConstantEffect& one : effects) {
-    sum.add(one.offset, drive_pattern(one.channel, 1.0, row));
+    sum.add(one.offset, effects::drive_pattern(one.channel, 1.0, row));
   }
   return {sum.advance, sum.turn, sum.excess};
 }
 
 /// How what the effects add grows with the noise.
-Matrix3 growth(const std::vector<ConstantEffect>& effects, const RowMotion& row) {
+Matrix3 growth(const std::vector<ConstantEffect>& effects, const drive::RowMotion& row) {
   const RowNoise none = additions(effects, row);
   Matrix3 result;
   for (int k = 0; k < 3; ++k) {
     const RowNoise unit = RowNoise::Unit(k);
-    RowMotion more = row;
+    drive::RowMotion more = row;
     add_noise({unit[0], unit[1]}, unit[2], more);
     result.col(k) = additions(effects, more) - none;
   }
@@ -79,8 +80,8 @@ void step_noise_under_effects(const std::vector<SessionPath>& before, FitState& 
     const std::vector<ConstantEffect> effects = constants_of(fit, s);
     if (effects.empty()) continue;
     const MotionRows& drive = fit.recordings[s].drive;
-    parallel_for(path.missing.size(), [&](std::size_t row) {
-      const RowMotion motion = row_motion(drive, row, fit.model.robot);
+    parallel::parallel_for(path.missing.size(), [&](std::size_t row) {
+      const drive::RowMotion motion = drive::row_motion(drive, row, fit.model.robot);
       const RowNoise next =
           stepped(noise_in(before[s], row), noise_in(path, row), growth(effects, motion));
       path.missing[row] = next.head<2>();
@@ -89,4 +90,4 @@ void step_noise_under_effects(const std::vector<SessionPath>& before, FitState& 
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

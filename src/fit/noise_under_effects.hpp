@@ -21,10 +21,10 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 /// Takes the step for the fit's paths, just found beside columns of the paths `before`. Of shapes
 /// that are not constant the columns are taken as they are.
 void step_noise_under_effects(const std::vector<SessionPath>& before, FitState& fit);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -7,7 +7,7 @@
 
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 OnlineEffects::OnlineEffects(const std::vector<Effect>& effects,
                              const std::vector<std::string>& covariates) {
@@ -26,32 +26,33 @@ OnlineEffects::OnlineEffects(const std::vector<Effect>& effects,
 
 OnlineTerms& OnlineEffects::terms_of(Channel channel) {
   if (channel == Channel::delay) return delays_;
-  const ActsOn acts = acts_on(channel);
-  if (acts == ActsOn::views) return views_;
-  if (acts == ActsOn::readings) return readings_;
-  return is_steering(channel) ? steering_ : drives_;
+  const effects::ActsOn acts = effects::acts_on(channel);
+  if (acts == effects::ActsOn::views) return views_;
+  if (acts == effects::ActsOn::readings) return readings_;
+  return effects::is_steering(channel) ? steering_ : drives_;
 }
 
 bool OnlineEffects::see_the_pose() const {
   return steering_.see_the_pose() || drives_.see_the_pose() || readings_.see_the_pose();
 }
 
-SteeringChange OnlineEffects::steering(const OnlineFacts& facts, const Pose& middle,
-                                       const std::vector<double>& readings) {
+drive::SteeringChange OnlineEffects::steering(const OnlineFacts& facts, const Pose& middle,
+                                              const std::vector<double>& readings) {
   steering_.fill(facts.row, middle, facts.covariates);
-  SteeringChange more;
+  drive::SteeringChange more;
   for (const OnlineTerm& term : steering_.all()) {
-    add_steering(term.channel, term.coefficient * steering_.value(term), readings.back(), more);
+    effects::add_steering(term.channel, term.coefficient * steering_.value(term), readings.back(),
+                          more);
   }
   return more;
 }
 
-DrivePattern OnlineEffects::drive(const OnlineFacts& facts, const Pose& middle,
-                                  const RowMotion& shown) {
-  DrivePattern more;
+effects::DrivePattern OnlineEffects::drive(const OnlineFacts& facts, const Pose& middle,
+                                           const drive::RowMotion& shown) {
+  effects::DrivePattern more;
   drives_.fill(facts.row, middle, facts.covariates);
   for (const OnlineTerm& term : drives_.all()) {
-    more.add(term.coefficient, drive_pattern(term.channel, drives_.value(term), shown));
+    more.add(term.coefficient, effects::drive_pattern(term.channel, drives_.value(term), shown));
   }
   return more;
 }
@@ -71,15 +72,15 @@ double OnlineEffects::cleared_time(double t, const OnlineFacts& facts) const {
   return t;
 }
 
-ViewPattern OnlineEffects::view(const OnlineFacts& facts, const Pose& end) const {
+effects::ViewPattern OnlineEffects::view(const OnlineFacts& facts, const Pose& end) const {
   OnlineTerms views = views_;
   views.fill(facts.row, end, facts.covariates);
-  ViewPattern sum;
+  effects::ViewPattern sum;
   for (const OnlineTerm& term : views.all()) {
     const double g = term.coefficient * views.value(term);
-    sum.add(1.0, view_pattern(term.channel, g, 0.0, 0.0));
+    sum.add(1.0, effects::view_pattern(term.channel, g, 0.0, 0.0));
   }
   return sum;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 /// What shapes see besides the pose.
 struct OnlineFacts {
-  CausalRow row;
+  drive::CausalRow row;
   std::span<const double> covariates;
 };
 
@@ -33,17 +33,18 @@ class OnlineEffects {
 
   /// What is added to steering that reads so; `middle`: where the robot is in the middle of the
   /// row.
-  SteeringChange steering(const OnlineFacts& facts, const Pose& middle,
-                          const std::vector<double>& readings);
+  drive::SteeringChange steering(const OnlineFacts& facts, const Pose& middle,
+                                 const std::vector<double>& readings);
   /// What is added to a row that the wheels show so.
-  DrivePattern drive(const OnlineFacts& facts, const Pose& middle, const RowMotion& shown);
+  effects::DrivePattern drive(const OnlineFacts& facts, const Pose& middle,
+                              const drive::RowMotion& shown);
   /// A compass reading at the row's end less what is added to it, rad.
   double cleared_reading(double reading, const OnlineFacts& facts, const Pose& end);
 
   /// A time of sighting less its delay, s.
   [[nodiscard]] double cleared_time(double t, const OnlineFacts& facts) const;
   /// What is added to a sighting.
-  [[nodiscard]] ViewPattern view(const OnlineFacts& facts, const Pose& end) const;
+  [[nodiscard]] effects::ViewPattern view(const OnlineFacts& facts, const Pose& end) const;
 
  private:
   OnlineTerms& terms_of(Channel channel);
@@ -55,4 +56,4 @@ class OnlineEffects {
   OnlineTerms delays_{OnlineTerms::Instant::end};
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

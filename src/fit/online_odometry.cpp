@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 OdometryInputs checked(OdometryInputs inputs) {
-  std::vector<std::string> taken = reserved_variables();
+  std::vector<std::string> taken = recording::reserved_variables();
   for (const std::string& name : inputs.covariates) {
     if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
       refuse_row("covariate \"" + name + "\" has the name of another variable");
@@ -35,8 +35,8 @@ void check_sensors(const WheelRow& row, const OdometryInputs& inputs) {
 
 void check_covariates(std::span<const double> covariates, const OdometryInputs& inputs) {
   if (covariates.size() != inputs.covariates.size()) {
-    refuse_row(joined("a row has ", covariates.size(), " covariates, expected ",
-                      inputs.covariates.size()));
+    refuse_row(text::joined("a row has ", covariates.size(), " covariates, expected ",
+                            inputs.covariates.size()));
   }
   for (std::size_t k = 0; k < covariates.size(); ++k) {
     if (std::isfinite(covariates[k])) continue;
@@ -45,16 +45,18 @@ void check_covariates(std::span<const double> covariates, const OdometryInputs& 
 }
 
 /// Where a row leads from now.
-Reckoning reckoned(const Reckoning& now, ReckonedRow row, const RowAtHand& by, bool compass) {
+Reckoning reckoned(const Reckoning& now, odometry::ReckonedRow row, const RowAtHand& by,
+                   bool compass) {
   Reckoning after = now;
   const double reading = row.reading;
   if (compass && !now.heading_known) {
     row.reading = kAbsent;
     after.reckoner.take(row, by.robot(), by.noise());
-    after.turned_variance += covariance_of(row, by.robot(), by.noise())(2, 2);
+    after.turned_variance += odometry::covariance_of(row, by.robot(), by.noise())(2, 2);
     if (std::isnan(reading)) return after;
     after.start_map.heading = wrap_angle(reading - after.reckoner.at().pose.heading);
-    after.reckoner.add_first_variance(reading_variance(by.noise()) + after.turned_variance);
+    after.reckoner.add_first_variance(odometry::reading_variance(by.noise()) +
+                                      after.turned_variance);
     after.heading_known = true;
     return after;
   }
@@ -70,8 +72,8 @@ OnlineOdometry::OnlineOdometry(const Model& model, OdometryInputs inputs)
       inputs_(checked(std::move(inputs))),
       effects_(model.effects, inputs_.covariates),
       covariates_(inputs_.covariates.size(), kAbsent),
-      now_{RowReckoner({}, inputs_.compass)} {
-  for (const Effect& effect : model.effects) require_of_drive(effect, model.robot);
+      now_{odometry::RowReckoner({}, inputs_.compass)} {
+  for (const Effect& effect : model.effects) effects::require_of_drive(effect, model.robot);
 }
 
 CorrectedRow OnlineOdometry::drive(const WheelRow& row, std::span<const double> covariates) {
@@ -79,19 +81,19 @@ CorrectedRow OnlineOdometry::drive(const WheelRow& row, std::span<const double> 
   check_sensors(row, inputs_);
   check_covariates(covariates, inputs_);
   const GyroShare gyro = at_hand_.take(row);
-  const ReckonedRow recorded = at_hand_.recorded(row, gyro);
-  const WheelWay wheels = at_hand_.wheels(gyro);
+  const odometry::ReckonedRow recorded = at_hand_.recorded(row, gyro);
+  const drive::WheelWay wheels = at_hand_.wheels(gyro);
   const BodyMotion& both = recorded.motion;
   const OnlineFacts facts{variables_.next(wheels, both, row.duration), covariates};
   // Shapes that speak of the pose see it first as the row says, then as corrected.
   const bool twice = effects_.see_the_pose();
-  ReckonedRow clear = recorded;
+  odometry::ReckonedRow clear = recorded;
   Reckoning after = twice ? reckoned(now_, clear, at_hand_, inputs_.compass) : now_;
   for (int pass = twice ? 0 : 1; pass < 2; ++pass) {
     if (!effects_.steer()) {
       clear = cleared(recorded, gyro, facts, after);
     } else {
-      const SteeringChange more = effects_.steering(facts, middle_of(after), row.readings);
+      const drive::SteeringChange more = effects_.steering(facts, middle_of(after), row.readings);
       const GyroShare steered = at_hand_.steer(row, more);
       clear = cleared(at_hand_.recorded(row, steered), steered, facts, after);
     }
@@ -110,7 +112,7 @@ CorrectedRow OnlineOdometry::drive(const WheelRow& row, std::span<const double> 
 void OnlineOdometry::reset() {
   PoseEstimate start;
   if (now_.heading_known) start.covariance(2, 2) = pose().covariance(2, 2);
-  now_ = {RowReckoner(start, inputs_.compass), now_.map_pose(), now_.heading_known};
+  now_ = {odometry::RowReckoner(start, inputs_.compass), now_.map_pose(), now_.heading_known};
 }
 
 void OnlineOdometry::set_map_pose(const Pose& pose_map) {
@@ -122,7 +124,7 @@ void OnlineOdometry::set_map_pose(const Pose& pose_map) {
 }
 
 void OnlineOdometry::set_effects(const std::vector<Effect>& effects) {
-  for (const Effect& effect : effects) require_of_drive(effect, at_hand_.robot());
+  for (const Effect& effect : effects) effects::require_of_drive(effect, at_hand_.robot());
   effects_ = OnlineEffects(effects, inputs_.covariates);
 }
 
@@ -130,7 +132,8 @@ CorrectedSighting OnlineOdometry::corrected(const Sighting& sighting) const {
   const OnlineFacts facts{last_, covariates_};
   CorrectedSighting result{sighting};
   result.sighting.t = effects_.cleared_time(sighting.t, facts);
-  ViewPattern added = mounted_view(at_hand_.robot().mounted, RecordingStream::sightings);
+  effects::ViewPattern added =
+      estimation::mounted_view(at_hand_.robot().mounted, estimation::RecordingStream::sightings);
   added.add(1.0, effects_.view(facts, now_.map_pose()));
   result.sensor_robot = {added.ahead, added.left};
   result.sighting.yaw = wrap_angle(sighting.yaw - added.yaw + added.heading);
@@ -149,15 +152,16 @@ Pose OnlineOdometry::middle_of(const Reckoning& after) const {
 }
 
 /// The row less what the effects add to it; `after` is where it leads as far as is known.
-ReckonedRow OnlineOdometry::cleared(const ReckonedRow& row, const GyroShare& gyro,
-                                    const OnlineFacts& facts, const Reckoning& after) {
-  const RowMotion shown = at_hand_.shown(row, gyro);
-  const DrivePattern more = effects_.drive(facts, middle_of(after), shown);
+odometry::ReckonedRow OnlineOdometry::cleared(const odometry::ReckonedRow& row,
+                                              const GyroShare& gyro, const OnlineFacts& facts,
+                                              const Reckoning& after) {
+  const drive::RowMotion shown = at_hand_.shown(row, gyro);
+  const effects::DrivePattern more = effects_.drive(facts, middle_of(after), shown);
   added_excess_ = more.excess;
-  ReckonedRow clear = at_hand_.cleared(row, gyro, more);
+  odometry::ReckonedRow clear = at_hand_.cleared(row, gyro, more);
   if (std::isnan(row.reading)) return clear;
   clear.reading = effects_.cleared_reading(clear.reading, facts, after.map_pose());
   return clear;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 /// Where the robot is, and by what.
 struct Reckoning {
-  RowReckoner reckoner;
+  odometry::RowReckoner reckoner;
   Pose start_map = {};           ///< where the pose is counted from
   bool heading_known = false;    ///< by a reading
   double turned_variance = 0.0;  ///< rad^2, since the start, until a reading comes
@@ -42,7 +42,7 @@ class OnlineOdometry {
   void set_effects(const std::vector<Effect>& effects);
 
   /// The last row as channels see it; what it points to lives until the next row.
-  [[nodiscard]] const RowMotion& shown() const { return shown_; }
+  [[nodiscard]] const drive::RowMotion& shown() const { return shown_; }
   /// Its compass reading less what effects add to it, rad; NaN: none.
   [[nodiscard]] double reading() const { return reading_; }
   /// By how much the gyro's turn exceeds the wheels', less what effects add to it, rad.
@@ -50,20 +50,20 @@ class OnlineOdometry {
 
  private:
   [[nodiscard]] Pose middle_of(const Reckoning& after) const;
-  ReckonedRow cleared(const ReckonedRow& row, const GyroShare& gyro, const OnlineFacts& facts,
-                      const Reckoning& after);
+  odometry::ReckonedRow cleared(const odometry::ReckonedRow& row, const GyroShare& gyro,
+                                const OnlineFacts& facts, const Reckoning& after);
 
   RowAtHand at_hand_;
   OdometryInputs inputs_;
   OnlineEffects effects_;
-  CausalVariables variables_;
-  CausalRow last_;
+  drive::CausalVariables variables_;
+  drive::CausalRow last_;
   std::vector<double> covariates_;  ///< of the last row
   Reckoning now_;
-  RowMotion shown_;
+  drive::RowMotion shown_;
   double reading_ = kAbsent;
   double added_excess_ = 0.0;  ///< by the effects, to the row at hand
   double excess_ = 0.0;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

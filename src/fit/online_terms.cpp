@@ -8,15 +8,15 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
-VariableSource of_row(std::string_view name, double CausalRow::*value) {
+VariableSource of_row(std::string_view name, double drive::CausalRow::*value) {
   return {name, value, value};
 }
 
 const std::vector<VariableSource>& known_sources() {
-  using Row = CausalRow;
+  using Row = drive::CausalRow;
   static const std::vector<VariableSource> sources{of_row("speed", &Row::speed),
                                                    of_row("turn_rate", &Row::turn_rate),
                                                    of_row("acceleration", &Row::acceleration),
@@ -72,7 +72,8 @@ void OnlineTerms::add(OnlineTerm term, const std::vector<std::string>& covariate
   terms_.push_back(std::move(term));
 }
 
-void OnlineTerms::fill(const CausalRow& row, const Pose& pose, std::span<const double> covariates) {
+void OnlineTerms::fill(const drive::CausalRow& row, const Pose& pose,
+                       std::span<const double> covariates) {
   std::size_t k = 0;
   for (auto& [name, column] : columns_) {
     const VariableSource& source = sources_[k++];
@@ -94,7 +95,7 @@ double OnlineTerms::value(const OnlineTerm& term) const {
     std::string state;
     for (const std::string& name : term.shape.variables()) {
       state += (state.empty() ? "" : ", ") + name + " = " +
-               short_text(columns_.find(name)->second.front());
+               text::short_text(columns_.find(name)->second.front());
     }
     throw std::invalid_argument("effect \"" + term.effect + "\": shape \"" + term.shape.text() +
                                 "\" has no finite value at " + state);
@@ -106,4 +107,4 @@ bool OnlineTerms::see_the_pose() const {
                      [](const VariableSource& one) { return one.pose != nullptr; });
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

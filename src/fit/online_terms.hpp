@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 struct OnlineTerm {
   Channel channel = Channel::travel;
@@ -30,8 +30,8 @@ struct OnlineTerm {
 /// Where a variable's value comes from: a row, a pose, or else the covariates.
 struct VariableSource {
   std::string_view name = {};
-  double CausalRow::*middle = nullptr;
-  double CausalRow::*end = nullptr;
+  double drive::CausalRow::*middle = nullptr;
+  double drive::CausalRow::*end = nullptr;
   double Pose::*pose = nullptr;
   std::size_t covariate = 0;
 };
@@ -47,7 +47,7 @@ class OnlineTerms {
   void add(OnlineTerm term, const std::vector<std::string>& covariates);
 
   /// What the shapes see from here on.
-  void fill(const CausalRow& row, const Pose& pose, std::span<const double> covariates);
+  void fill(const drive::CausalRow& row, const Pose& pose, std::span<const double> covariates);
 
   /// A shape's value. Throws std::invalid_argument, naming the effect, where it is not finite.
   [[nodiscard]] double value(const OnlineTerm& term) const;
@@ -63,4 +63,4 @@ class OnlineTerms {
   std::vector<VariableSource> sources_;  ///< in the order of the columns
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

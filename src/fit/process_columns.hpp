@@ -17,14 +17,15 @@
 
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 /// Of a process: s or m. A shorter one is laid as one of this length.
 inline constexpr double kLeastProcessLength = 1e-3;
 
 /// What one unit of a view's pattern changes of a measurement, where the fit stands.
-[[nodiscard]] ByView by_view_of(const FitState& fit, const RecordingProblem& problem,
-                                std::size_t measurement);
+[[nodiscard]] effects::ByView by_view_of(const FitState& fit,
+                                         const estimation::RecordingProblem& problem,
+                                         std::size_t measurement);
 
 /// Z, `rows` of them, those of the fit's measurements first; `most` columns. Nothing where the
 /// process has more steps than that and is no walk, or acts on nothing that is measured.
@@ -32,4 +33,4 @@ inline constexpr double kLeastProcessLength = 1e-3;
                                                              const NoiseProcess& process,
                                                              Eigen::Index rows, Eigen::Index most);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -11,7 +11,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 constexpr double kDiffuse = 1e4;  // rad^2
@@ -22,22 +22,22 @@ constexpr double kLeastVariance = 1e-12;
 bool shows_in_readings(const NoiseProcess& process) {
   if (process.process == ProcessKind::white) return false;
   if (process.channel == Channel::compass) return is_chain(process.process);
-  const RowMotion some = row_motion(BodyMotion{0.75, 0.0, 1.0}, 1.0, Robot());
-  return acts_on(process.channel) == ActsOn::drives &&
-         drive_pattern(process.channel, 1.0, some).turn != 0.0;
+  const drive::RowMotion some = drive::row_motion(BodyMotion{0.75, 0.0, 1.0}, 1.0, Robot());
+  return effects::acts_on(process.channel) == effects::ActsOn::drives &&
+         effects::drive_pattern(process.channel, 1.0, some).turn != 0.0;
 }
 
 ReadingScatter::ReadingScatter(const FitState& fit) {
-  const std::vector<std::vector<DrivePattern>> effects =
-      summed_patterns(fit.columns.border, offsets_of(fit), fit.recordings.size());
+  const std::vector<std::vector<effects::DrivePattern>> effects =
+      estimation::summed_patterns(fit.columns.border, offsets_of(fit), fit.recordings.size());
   Noise wheels_alone;
   wheels_alone.left = fit.model.noise.left;
   wheels_alone.right = fit.model.noise.right;
   std::vector<std::vector<Habits>> habits;
-  for (const Measurement& one : fit.problem.measurements) {
-    if (!reads_compass(one)) continue;
-    const std::vector<SegmentRow>& rows = fit.problem.segments[one.source];
-    if (readings_of(rows) < 3) continue;
+  for (const estimation::Measurement& one : fit.problem.measurements) {
+    if (!estimation::reads_compass(one)) continue;
+    const std::vector<estimation::SegmentRow>& rows = fit.problem.segments[one.source];
+    if (estimation::readings_of(rows) < 3) continue;
     const std::size_t session = idx(one.session);
     const MotionRows& drive = fit.recordings[session].drive;
     if (!drive.gyro.empty() || !drive.wheels.empty()) continue;  // turns are not the wheels' alone
@@ -47,13 +47,13 @@ ReadingScatter::ReadingScatter(const FitState& fit) {
     std::vector<Habits> own;
     double turned = 0.0;
     double first = kAbsent;
-    for (const SegmentRow& row : rows) {
-      const SegmentRow moved = with_effects(row, effects[session]);
+    for (const estimation::SegmentRow& row : rows) {
+      const estimation::SegmentRow moved = estimation::with_effects(row, effects[session]);
       turned += moved.turn;
       const Robot& robot = fit.model.robot;
-      const WheelTravel travel = row.part * noisy_travel(drive, row.row, robot);
+      const WheelTravel travel = row.part * drive::noisy_travel(drive, row.row, robot);
       Row next;
-      next.motion = row_motion(row.part * drive.motion(row.row), row.duration, robot);
+      next.motion = drive::row_motion(row.part * drive.motion(row.row), row.duration, robot);
       next.way = std::abs(row.path);
       next.turn = std::abs(row.turn);
       next.wheels = arc_covariance(travel, row.duration, robot, wheels_alone)(2, 2);
@@ -159,8 +159,8 @@ struct ReadingScatter::Filter {
     P(0, 0) = kDiffuse;
     for (int p = 0; p < Count; ++p) {
       const NoiseProcess& one = noise.processes[idx(p)];
-      if (!is_walk(one.process)) P(p + 1, p + 1) = one.sd * one.sd;
-      if (acts_on(one.channel) == ActsOn::drives) seen[p + 1] = 0.0;
+      if (!estimation::is_walk(one.process)) P(p + 1, p + 1) = one.sd * one.sd;
+      if (effects::acts_on(one.channel) == effects::ActsOn::drives) seen[p + 1] = 0.0;
     }
   }
 
@@ -169,14 +169,15 @@ struct ReadingScatter::Filter {
     for (int p = 0; p < Count; ++p) {
       const NoiseProcess& one = noise.processes[idx(p)];
       const int at = p + 1;
-      const bool by_way = goes_with_distance(one.process);
+      const bool by_way = estimation::goes_with_distance(one.process);
       const double lag = by_way ? row.way : row.motion.duration;
       if (is_correlated(one.process) && (by_way || lag != last)) {
         keeps[at] = std::exp(-lag / one.length);
       }
       const double keep = keeps[at];
       if (seen[at] == 0.0) {
-        const double turn = drive_pattern(one.channel, 0.5 * (1.0 + keep), row.motion).turn;
+        const double turn =
+            effects::drive_pattern(one.channel, 0.5 * (1.0 + keep), row.motion).turn;
         x[0] += turn * x[at];
         P.row(0) += turn * P.row(at);
         P.col(0) += turn * P.col(at);
@@ -227,4 +228,4 @@ double ReadingScatter::filtered(const ReadingNoise& noise) const {
   return sum + std::log(product);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

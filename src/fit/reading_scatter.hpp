@@ -25,7 +25,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 /// Noise as far as it shows in readings.
 struct ReadingNoise {
@@ -61,7 +61,7 @@ class ReadingScatter {
   };
   struct Row {
     double y = 0.0;  ///< rad; NaN: no reading
-    RowMotion motion;
+    drive::RowMotion motion;
     double way = 0.0;     ///< m
     double turn = 0.0;    ///< rad, not signed
     double wheels = 0.0;  ///< variance that the wheels' k give the turn, rad^2
@@ -88,4 +88,4 @@ class ReadingScatter {
   std::vector<std::vector<Row>> segments_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

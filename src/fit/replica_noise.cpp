@@ -15,13 +15,13 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 /// A value of a row, and what the effects add to it.
 double with_effects(double value, const Replica& replica,
-                    const std::vector<const std::vector<DrivePattern>*>& patterns, std::size_t row,
-                    double DrivePattern::*part) {
+                    const std::vector<const std::vector<effects::DrivePattern>*>& patterns,
+                    std::size_t row, double effects::DrivePattern::*part) {
   for (std::size_t k = 0; k < patterns.size(); ++k) {
     if (patterns[k] == nullptr) continue;
     value += replica.offsets[static_cast<Eigen::Index>(k)] * (*patterns[k])[row].*part;
@@ -30,8 +30,10 @@ double with_effects(double value, const Replica& replica,
 }
 
 /// Of other wheels than two: what their noise does to the body.
-void disturb_columns(std::size_t row, const Model& model, MotionRows& drive, NormalDraws& draw) {
-  const ArcNoise own = row_noise(drive, row, 1.0, drive.duration(row), model.robot, model.noise);
+void disturb_columns(std::size_t row, const Model& model, MotionRows& drive,
+                     statistics::NormalDraws& draw) {
+  const ArcNoise own =
+      odometry::row_noise(drive, row, 1.0, drive.duration(row), model.robot, model.noise);
   Matrix3 Q;
   Q << own.along, own.along_lateral, own.shared,            //
       own.along_lateral, own.lateral, own.heading_lateral,  //
@@ -41,15 +43,16 @@ void disturb_columns(std::size_t row, const Model& model, MotionRows& drive, Nor
   for (int k = 0; k < 3; ++k) {
     more += draw(std::sqrt(std::max(axes.eigenvalues()[k], 0.0))) * axes.eigenvectors().col(k);
   }
-  add_motion(drive, row, {more[0], more[1], more[2]}, model.robot);
+  drive::add_motion(drive, row, {more[0], more[1], more[2]}, model.robot);
 }
 
 /// g of a process's channel, drawn for every row's end.
 std::vector<double> drawn_gains(const NoiseProcess& process, const MotionRows& drive,
-                                const std::vector<double>& ends_of_legs, NormalDraws& draw) {
-  const bool way = goes_with_distance(process.process);
+                                const std::vector<double>& ends_of_legs,
+                                statistics::NormalDraws& draw) {
+  const bool way = estimation::goes_with_distance(process.process);
   std::vector<double> g(drive.rows(), 0.0);
-  double value = is_walk(process.process) ? 0.0 : draw(process.sd);
+  double value = estimation::is_walk(process.process) ? 0.0 : draw(process.sd);
   int leg = 0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const double lag = way ? std::abs(drive.forward[row]) : drive.duration(row);
@@ -60,7 +63,7 @@ std::vector<double> drawn_gains(const NoiseProcess& process, const MotionRows& d
         value = draw(process.sd);
         break;
       case ProcessKind::per_leg: {
-        const int at = leg_at(ends_of_legs, middle);
+        const int at = estimation::leg_at(ends_of_legs, middle);
         if (at != leg) value = draw(process.sd);
         leg = at;
         break;
@@ -80,23 +83,24 @@ std::vector<double> drawn_gains(const NoiseProcess& process, const MotionRows& d
         break;
     }
     // Wheels take the mean over a row, of a chain nearly that of its ends.
-    const bool mean = is_chain(process.process) && acts_on(process.channel) == ActsOn::drives;
+    const bool mean =
+        is_chain(process.process) && effects::acts_on(process.channel) == effects::ActsOn::drives;
     g[row] = mean ? 0.5 * (before + value) : value;
   }
   return g;
 }
 
 void add_to_fixes(const NoiseProcess& process, const std::vector<double>& g,
-                  DrivenRecording& recording, NormalDraws& draw) {
+                  DrivenRecording& recording, statistics::NormalDraws& draw) {
   for (Fix& one : recording.fixes) {
     const bool white = process.process == ProcessKind::white;
-    const double value = white ? draw(process.sd) : g[row_at(recording.drive, one.t)];
+    const double value = white ? draw(process.sd) : g[drive::row_at(recording.drive, one.t)];
     (process.channel == Channel::fix_x ? one.x : one.y) += value;
   }
 }
 
 void add_to_sightings(const NoiseProcess& process, const std::vector<double>& g,
-                      DrivenRecording& recording, NormalDraws& draw) {
+                      DrivenRecording& recording, statistics::NormalDraws& draw) {
   struct Pass {
     double seen = 0.0;
     double value = 0.0;
@@ -104,30 +108,31 @@ void add_to_sightings(const NoiseProcess& process, const std::vector<double>& g,
   std::map<std::string, Pass> passes;
   for (Sighting& one : recording.sightings) {
     if (one.standing() && process.channel != Channel::sighting_yaw) continue;
-    double value = g[row_at(recording.drive, one.t)];
+    double value = g[drive::row_at(recording.drive, one.t)];
     if (process.process == ProcessKind::white) value = draw(process.sd);
     if (process.process == ProcessKind::per_pass) {
       const auto [at, fresh] = passes.try_emplace(one.landmark, Pass{});
-      if (fresh || one.t - at->second.seen > kLongestGap) at->second.value = draw(process.sd);
+      if (fresh || one.t - at->second.seen > estimation::kLongestGap)
+        at->second.value = draw(process.sd);
       at->second.seen = one.t;
       value = at->second.value;
     }
-    one = without(process.channel, value, one);
-    one.range = std::max(one.range, kLeastDrawnRange);
+    one = effects::without(process.channel, value, one);
+    one.range = std::max(one.range, estimation::kLeastDrawnRange);
   }
 }
 
 }  // namespace
 
-void part_wheels_and_gyro(std::size_t session, Replica& replica, NormalDraws& draw) {
+void part_wheels_and_gyro(std::size_t session, Replica& replica, statistics::NormalDraws& draw) {
   MotionRows& drive = replica.timed[session].drive;
-  const auto patterns = drive_patterns(replica.border, session);
+  const auto patterns = estimation::drive_patterns(replica.border, session);
   const Robot& robot = replica.fit.model.robot;
   for (std::size_t row = 0; row < drive.gyro.size(); ++row) {
     const GyroShare& gyro = drive.gyro[row];
     if (!std::isfinite(gyro.variance)) continue;
-    const double excess = with_effects(0.0, replica, patterns, row, &DrivePattern::excess);
-    add_motion(drive, row, excess * BodyMotion{gyro.along, gyro.lateral, gyro.turn}, robot);
+    const double excess = with_effects(0.0, replica, patterns, row, &effects::DrivePattern::excess);
+    drive::add_motion(drive, row, excess * BodyMotion{gyro.along, gyro.lateral, gyro.turn}, robot);
     const double duration = drive.duration(row);
     const double turn = drive.turn[row] - excess;
     drive.yaw_rate[row] =
@@ -136,16 +141,16 @@ void part_wheels_and_gyro(std::size_t session, Replica& replica, NormalDraws& dr
   if (drive.gyro.empty()) return;
   drive.gyro.clear();
   for (std::size_t row = 0; row < drive.pair.left.size(); ++row) {
-    const WheelTravel own = wheel_travel(drive.motion(row), robot);
+    const WheelTravel own = drive::wheel_travel(drive.motion(row), robot);
     drive.pair.left[row] = own.left;
     drive.pair.right[row] = own.right;
   }
 }
 
-void disturb_drive(std::size_t session, Replica& replica, NormalDraws& draw) {
+void disturb_drive(std::size_t session, Replica& replica, statistics::NormalDraws& draw) {
   MotionRows& drive = replica.timed[session].drive;
   const Noise& noise = replica.fit.model.noise;
-  const auto patterns = drive_patterns(replica.border, session);
+  const auto patterns = estimation::drive_patterns(replica.border, session);
   const Robot& robot = replica.fit.model.robot;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const double duration = drive.duration(row);
@@ -154,25 +159,25 @@ void disturb_drive(std::size_t session, Replica& replica, NormalDraws& draw) {
                                           noise.heading_per_rad * noise.heading_per_rad * turn));
     const double travel = draw(noise.travel_per_s * std::sqrt(duration));
     if (drive.wheels.empty()) {
-      const auto [left, right] = own_travel(drive, row, robot);
+      const auto [left, right] = drive::own_travel(drive, row, robot);
       const WheelTravel more{draw(noise.left * std::sqrt(std::abs(left))) + travel,
                              draw(noise.right * std::sqrt(std::abs(right))) + travel};
       const BodyMotion turned{0.0, 0.0, heading};
-      add_motion(drive, row, body_motion(more, robot.wheelbase) + turned, robot);
+      drive::add_motion(drive, row, drive::body_motion(more, robot.wheelbase) + turned, robot);
     } else {
       disturb_columns(row, replica.fit.model, drive, draw);
     }
     if (!drive.has_compass() || std::isnan(drive.heading[row])) continue;
     const double shown = with_effects(replica.paths[session].ends[row].heading, replica, patterns,
-                                      row, &DrivePattern::compass);
+                                      row, &effects::DrivePattern::compass);
     drive.heading[row] = wrap_angle(shown + draw(noise.compass));
   }
 }
 
 void add_process(const NoiseProcess& process, std::size_t session, Replica& replica,
-                 NormalDraws& draw) {
+                 statistics::NormalDraws& draw) {
   const bool of_fixes = process.channel == Channel::fix_x || process.channel == Channel::fix_y;
-  if (!of_fixes && !is_recordable(process.channel)) {
+  if (!of_fixes && !effects::is_recordable(process.channel)) {
     throw std::invalid_argument("noise of channel \"" + std::string(name_of(process.channel)) +
                                 "\" cannot be drawn: no recording can hold it");
   }
@@ -180,24 +185,24 @@ void add_process(const NoiseProcess& process, std::size_t session, Replica& repl
   MotionRows& drive = recording.drive;
   // Legs of the recording as it was: rests may be none any more.
   const std::vector<double> g =
-      drawn_gains(process, drive, ends_of_legs(replica.fit.recordings[session]), draw);
+      drawn_gains(process, drive, estimation::ends_of_legs(replica.fit.recordings[session]), draw);
   if (of_fixes) {
     add_to_fixes(process, g, recording, draw);
     return;
   }
-  switch (acts_on(process.channel)) {
-    case ActsOn::readings:
+  switch (effects::acts_on(process.channel)) {
+    case effects::ActsOn::readings:
       for (std::size_t row = 0; row < drive.heading.size(); ++row) {
         drive.heading[row] = wrap_angle(drive.heading[row] + g[row]);
       }
       return;
-    case ActsOn::drives:
-      free_drive(process.channel, g, replica.fit.model.robot, drive);
+    case effects::ActsOn::drives:
+      effects::free_drive(process.channel, g, replica.fit.model.robot, drive);
       return;
-    case ActsOn::views:
+    case effects::ActsOn::views:
       add_to_sightings(process, g, recording, draw);
       return;
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -11,16 +11,16 @@
 #include <string>
 #include <tuple>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 /// The fit's recordings on their way to new ones.
 struct Replica {
   const FitState& fit;
   Eigen::VectorXd offsets;
-  RecordingState state;                ///< without lasting noise; the robot misses landmarks
+  estimation::RecordingState state;    ///< without lasting noise; the robot misses landmarks
   std::vector<DrivenRecording> timed;  ///< as fitted: moved back by the delays
   std::vector<SessionPath> paths = {};
-  EffectParameters border = {};
+  estimation::EffectParameters border = {};
 };
 
 /// What a survey, copied to every session, has been drawn to say: it stays one.
@@ -29,17 +29,18 @@ struct DrawnSurvey {
   std::map<std::tuple<std::string, double, double, double>, double> headings;
 };
 
-void draw_survey(std::size_t session, DrawnSurvey& drawn, Replica& replica, NormalDraws& draw);
-void draw_truth(std::size_t session, Replica& replica, NormalDraws& draw);
-void draw_fixes_and_loops(std::size_t session, Replica& replica, NormalDraws& draw);
-void draw_sightings(Replica& replica, NormalDraws& draw);
+void draw_survey(std::size_t session, DrawnSurvey& drawn, Replica& replica,
+                 statistics::NormalDraws& draw);
+void draw_truth(std::size_t session, Replica& replica, statistics::NormalDraws& draw);
+void draw_fixes_and_loops(std::size_t session, Replica& replica, statistics::NormalDraws& draw);
+void draw_sightings(Replica& replica, statistics::NormalDraws& draw);
 
 /// Of a drive along which both lead, what wheels and gyro each show; the gyro's noise.
-void part_wheels_and_gyro(std::size_t session, Replica& replica, NormalDraws& draw);
+void part_wheels_and_gyro(std::size_t session, Replica& replica, statistics::NormalDraws& draw);
 /// Noise of wheels and compass.
-void disturb_drive(std::size_t session, Replica& replica, NormalDraws& draw);
+void disturb_drive(std::size_t session, Replica& replica, statistics::NormalDraws& draw);
 /// Throws std::invalid_argument on a channel that no recording can hold.
 void add_process(const NoiseProcess& process, std::size_t session, Replica& replica,
-                 NormalDraws& draw);
+                 statistics::NormalDraws& draw);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -12,7 +12,7 @@
 #include <numeric>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::fitting {
 namespace {
 
 constexpr int kLeadingRounds = 4;        // shapes see the rows that they change
@@ -24,16 +24,16 @@ struct MissedStop {
   Vector2 missed = Vector2::Zero();  ///< from where the fit has the robot
 };
 
-std::size_t pose_of(const RecordingProblem& problem, int node) {
+std::size_t pose_of(const estimation::RecordingProblem& problem, int node) {
   return idx(node - problem.landmark_count());
 }
 
 /// m from the first pose.
-std::vector<double> driven_to_poses(const RecordingProblem& problem) {
+std::vector<double> driven_to_poses(const estimation::RecordingProblem& problem) {
   std::vector<double> driven(problem.poses.size(), 0.0);
-  for (const Measurement& one : problem.measurements) {
-    if (!is_segment(one)) continue;
-    for (const SegmentRow& row : problem.segments[one.source]) {
+  for (const estimation::Measurement& one : problem.measurements) {
+    if (!estimation::is_segment(one)) continue;
+    for (const estimation::SegmentRow& row : problem.segments[one.source]) {
       driven[pose_of(problem, one.to)] += std::abs(row.path);
     }
   }
@@ -44,14 +44,14 @@ std::vector<double> driven_to_poses(const RecordingProblem& problem) {
 /// Per session, in order. What is missed is drawn anew wherever the robot has driven on.
 std::map<int, std::vector<MissedStop>> drawn_stops(const Replica& replica,
                                                    const std::vector<double>& driven,
-                                                   NormalDraws& draw) {
+                                                   statistics::NormalDraws& draw) {
   const FitState& fit = replica.fit;
   const double sd = fit.model.noise.sighting;
   const NoiseFree exact(fit.recordings, fit.model, fit.problem, fit.columns.border, replica.offsets,
                         replica.state);
   std::map<int, std::vector<MissedStop>> stops;
-  for (const Measurement& one : fit.problem.measurements) {
-    if (!is_standing(one)) continue;
+  for (const estimation::Measurement& one : fit.problem.measurements) {
+    if (!estimation::is_standing(one)) continue;
     stops[one.session].push_back({pose_of(fit.problem, one.from)});
   }
   for (auto& [session, list] : stops) {
@@ -73,7 +73,7 @@ std::map<int, std::vector<MissedStop>> drawn_stops(const Replica& replica,
 
 /// Between two landmarks the path gives way little by little: a robot that turns on the spot goes
 /// nowhere.
-void miss_landmarks(Replica& replica, NormalDraws& draw) {
+void miss_landmarks(Replica& replica, statistics::NormalDraws& draw) {
   const std::vector<double> driven = driven_to_poses(replica.fit.problem);
   std::map<int, std::vector<MissedStop>> stops = drawn_stops(replica, driven, draw);
   for (std::size_t k = 0; k < replica.state.poses.size(); ++k) {
@@ -106,7 +106,7 @@ void lead_through_poses(Replica& replica) {
         Vector2& missing = replica.paths[s].missing[row];
         // Who rests goes on resting; the other rows take its share in the next round.
         if (!drive.rests(row)) {
-          add_motion(drive, row, {missing[0], 0.0, missing[1]}, robot);
+          drive::add_motion(drive, row, {missing[0], 0.0, missing[1]}, robot);
         }
         missing.setZero();
       }
@@ -151,7 +151,7 @@ std::vector<DrivenRecording> in_own_times(std::vector<DrivenRecording> recording
     take_events(recordings, s, model, Channel::fix_delay, timed.fixes, own.fixes);
     own.loops = std::move(timed.loops);
     std::vector<WheelColumn> wheels = std::move(own.drive.wheels);
-    own.drive = unsteered(std::move(timed.drive));
+    own.drive = drive::unsteered(std::move(timed.drive));
     own.drive.wheels = std::move(wheels);
     own.survey = std::move(timed.survey);
   }
@@ -162,7 +162,7 @@ std::vector<DrivenRecording> in_own_times(std::vector<DrivenRecording> recording
 
 std::vector<DrivenRecording> replicated(const std::vector<DrivenRecording>& recordings,
                                         const FitState& fit, std::uint64_t seed) {
-  NormalDraws draw{std::mt19937_64(seed)};
+  statistics::NormalDraws draw{std::mt19937_64(seed)};
   Replica replica{fit, offsets_of(fit), fit.adjustment.state, fit.recordings};
   replica.state.noise.resize(0);
   miss_landmarks(replica, draw);
@@ -183,4 +183,4 @@ std::vector<DrivenRecording> replicated(const std::vector<DrivenRecording>& reco
   return in_own_times(recordings, std::move(replica));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

@@ -16,7 +16,7 @@
 
 #include <cstdint>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 /// `recordings` are those that were fitted. What the fit left out is drawn like all else. Throws
 /// std::invalid_argument where a process acts on a channel that no recording can hold (creep,
@@ -24,4 +24,4 @@ namespace trussmap {
 [[nodiscard]] std::vector<DrivenRecording> replicated(
     const std::vector<DrivenRecording>& recordings, const FitState& fit, std::uint64_t seed);
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

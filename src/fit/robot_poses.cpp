@@ -13,6 +13,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace fitting;
+
 namespace {
 
 /// The covariance of positions turned into axes that are turned by so much.
@@ -27,8 +29,8 @@ Motion row_motion(const MotionRows& drive, std::size_t row, double from, double 
                   const Model& model) {
   const double begin = row == 0 ? drive.start() : drive.t[row - 1];
   const double part = (to - from) / (drive.t[row] - begin);
-  return {displacement_of(part * drive.motion(row)),
-          row_covariance(drive, row, part, to - from, model.robot, model.noise)};
+  return {odometry::displacement_of(part * drive.motion(row)),
+          odometry::row_covariance(drive, row, part, to - from, model.robot, model.noise)};
 }
 
 /// A session of a fit: what is known at its nodes, and between them.
@@ -40,9 +42,9 @@ class AdjustedSession {
         path_(fit_.paths[session]),
         wheels_(cleared(fit_)[session].recording.drive) {
     const std::vector<Matrix3> covariances =
-        pose_covariances(fit_.problem, fit_.columns.border, fit_.adjustment);
+        estimation::pose_covariances(fit_.problem, fit_.columns.border, fit_.adjustment);
     for (std::size_t k = 0; k < fit_.problem.poses.size(); ++k) {
-      const PoseNode& node = fit_.problem.poses[k];
+      const estimation::PoseNode& node = fit_.problem.poses[k];
       if (idx(node.session) != session) continue;
       nodes_.push_back({node.t, {fit_.adjustment.state.poses[k], covariances[k]}});
     }
@@ -66,7 +68,7 @@ class AdjustedSession {
  private:
   [[nodiscard]] Motion driven(double from, double to) const {
     Motion motion;
-    for (std::size_t row = row_at(wheels_, from); row < wheels_.rows(); ++row) {
+    for (std::size_t row = drive::row_at(wheels_, from); row < wheels_.rows(); ++row) {
       const double begin = std::max(from, row == 0 ? wheels_.start() : wheels_.t[row - 1]);
       const double end = std::min(to, wheels_.t[row]);
       if (end > begin) motion = then(motion, row_motion(wheels_, row, begin, end, fit_.model));

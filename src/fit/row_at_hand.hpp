@@ -20,7 +20,7 @@
 #include <string>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::fitting {
 
 [[noreturn]] inline void refuse_row(const std::string& why) {
   throw std::invalid_argument(why);
@@ -38,7 +38,7 @@ class RowAtHand {
       : robot_(std::move(robot)), noise_(noise), gyro_(gyro) {
     if (!(robot_.wheelbase > 0.0)) refuse_row("the wheelbase must be above 0 m");
     if (robot_.drive == DriveKind::unicycle && (columns() < 1 || columns() > 2)) {
-      refuse_row(joined("drive unicycle has ", columns(), " columns, expected 1 or 2"));
+      refuse_row(text::joined("drive unicycle has ", columns(), " columns, expected 1 or 2"));
     }
     drive_.forward = drive_.turn = {0.0};
     if (robot_.drive == DriveKind::differential) drive_.pair = {{0.0}, {0.0}};
@@ -49,14 +49,14 @@ class RowAtHand {
 
   void check(const WheelRow& row) const {
     if (!std::isfinite(row.duration) || row.duration <= 0.0) {
-      refuse_row("a row lasts " + short_text(row.duration) + " s, expected more than 0");
+      refuse_row("a row lasts " + text::short_text(row.duration) + " s, expected more than 0");
     }
     if (!std::isfinite(row.left) || !std::isfinite(row.right)) {
       refuse_row("a row's travel is not finite");
     }
     if (row.readings.size() != columns()) {
-      refuse_row(joined("a row has readings of ", row.readings.size(), " wheels, expected ",
-                        expected_readings()));
+      refuse_row(text::joined("a row has readings of ", row.readings.size(), " wheels, expected ",
+                              expected_readings()));
     }
     if (columns() > 0 && (row.left != 0.0 || row.right != 0.0)) {
       refuse_row("a row has travels left and right, expected readings of " + expected_readings());
@@ -65,9 +65,10 @@ class RowAtHand {
       refuse_row("a row has no yaw rate, expected one: it is how the robot turns");
     }
     for (std::size_t k = 0; k < row.readings.size(); ++k) {
-      if (is_possible_reading(row.readings[k])) continue;
-      refuse_row(joined("column ", robot_.columns[k], " reads ", short_text(row.readings[k]),
-                        ", expected a travel in metres or an angle in radians"));
+      if (drive::is_possible_reading(row.readings[k])) continue;
+      refuse_row(text::joined("column ", robot_.columns[k], " reads ",
+                              text::short_text(row.readings[k]),
+                              ", expected a travel in metres or an angle in radians"));
     }
   }
 
@@ -79,24 +80,24 @@ class RowAtHand {
         drive_.pair.right.front() = row.right;
       }
       set(columns() > 0 ? unicycle_motion(row)
-                        : body_motion({row.left, row.right}, robot_.wheelbase));
+                        : drive::body_motion({row.left, row.right}, robot_.wheelbase));
       return share_of(row);
     }
     for (std::size_t k = 0; k < row.readings.size(); ++k) {
       drive_.wheels[k].reading.front() = row.readings[k];
     }
     if (!kinematics_->move(drive_, 0)) {
-      refuse_row("a steering angle of " + short_text(row.readings.back()) +
+      refuse_row("a steering angle of " + text::short_text(row.readings.back()) +
                  " rad leaves the measured wheel no way ahead, expected a smaller one");
     }
     return share_of(row);
   }
 
   /// The same, steered as effects have it.
-  GyroShare steer(const WheelRow& row, const SteeringChange& more) {
+  GyroShare steer(const WheelRow& row, const drive::SteeringChange& more) {
     if (kinematics_ && !kinematics_->move(drive_, 0, more)) {
       refuse_row(
-          "a steering angle of " + short_text(row.readings.back() + more.angle) +
+          "a steering angle of " + text::short_text(row.readings.back() + more.angle) +
           " rad, which the model's steering effects lead to, leaves the measured wheel no way "
           "ahead, expected a smaller one");
     }
@@ -104,15 +105,16 @@ class RowAtHand {
   }
 
   /// As wheels and gyro together say.
-  ReckonedRow recorded(const WheelRow& row, const GyroShare& gyro) {
-    ReckonedRow result{together(gyro), row.duration, 0.0, row.compass};
+  odometry::ReckonedRow recorded(const WheelRow& row, const GyroShare& gyro) {
+    odometry::ReckonedRow result{odometry::together(gyro), row.duration, 0.0, row.compass};
     result.noise = noise_of(result, gyro);
     return result;
   }
 
   /// The row less what is added to it.
-  ReckonedRow cleared(const ReckonedRow& row, const GyroShare& gyro, const DrivePattern& more) {
-    ReckonedRow clear = row;
+  odometry::ReckonedRow cleared(const odometry::ReckonedRow& row, const GyroShare& gyro,
+                                const effects::DrivePattern& more) {
+    odometry::ReckonedRow clear = row;
     clear.motion = row.motion + BodyMotion{more.advance, 0.0, more.turn};
     clear.slip = more.slip;
     clear.noise = noise_of(clear, gyro);
@@ -120,20 +122,21 @@ class RowAtHand {
   }
 
   /// As shapes of the kind of motion see the row that was taken.
-  [[nodiscard]] WheelWay wheels(const GyroShare& gyro) const {
-    return {drive_.pair.empty() ? wheel_travel(gyro.wheels, robot_) : drive_.pair.at(0),
+  [[nodiscard]] drive::WheelWay wheels(const GyroShare& gyro) const {
+    return {drive_.pair.empty() ? drive::wheel_travel(gyro.wheels, robot_) : drive_.pair.at(0),
             gyro.wheels.sideways};
   }
 
   /// As channels see it.
-  [[nodiscard]] RowMotion shown(const ReckonedRow& row, const GyroShare& gyro) const {
-    RowMotion shown = row_motion(gyro, row.duration, robot_);
+  [[nodiscard]] drive::RowMotion shown(const odometry::ReckonedRow& row,
+                                       const GyroShare& gyro) const {
+    drive::RowMotion shown = drive::row_motion(gyro, row.duration, robot_);
     if (kinematics_) shown.wheels = &drive_.wheels;
     return shown;
   }
 
-  [[nodiscard]] Motion motion(const ReckonedRow& row) const {
-    return {displacement_of(row.whole()), covariance_of(row, robot_, noise_)};
+  [[nodiscard]] Motion motion(const odometry::ReckonedRow& row) const {
+    return {odometry::displacement_of(row.whole()), odometry::covariance_of(row, robot_, noise_)};
   }
 
   [[nodiscard]] const Robot& robot() const { return robot_; }
@@ -158,16 +161,17 @@ class RowAtHand {
   [[nodiscard]] GyroShare share_of(const WheelRow& row) {
     drive_.gyro.clear();
     const double beside = turns_by_gyro(robot_) ? kAbsent : row.yaw_rate;
-    return gyro_share(drive_, 0, beside, row.duration, robot_, noise_);
+    return odometry::gyro_share(drive_, 0, beside, row.duration, robot_, noise_);
   }
 
   /// Nothing of two wheels without a gyro: then that of the wheels.
-  [[nodiscard]] std::optional<ArcNoise> noise_of(const ReckonedRow& row, const GyroShare& gyro) {
+  [[nodiscard]] std::optional<ArcNoise> noise_of(const odometry::ReckonedRow& row,
+                                                 const GyroShare& gyro) {
     if (!gyro_ && !kinematics_) return std::nullopt;
     set(row.motion);
     drive_.gyro.clear();
     if (gyro_) drive_.gyro.push_back(gyro);
-    return row_noise(drive_, 0, 1.0, row.duration, robot_, noise_);
+    return odometry::row_noise(drive_, 0, 1.0, row.duration, robot_, noise_);
   }
 
   [[nodiscard]] std::string expected_readings() const {
@@ -180,8 +184,8 @@ class RowAtHand {
   Robot robot_;
   Noise noise_;
   bool gyro_;
-  std::optional<WheelKinematics> kinematics_;  ///< of other wheels than two
-  MotionRows drive_;                           ///< of this row alone
+  std::optional<drive::WheelKinematics> kinematics_;  ///< of other wheels than two
+  MotionRows drive_;                                  ///< of this row alone
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::fitting

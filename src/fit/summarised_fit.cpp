@@ -14,6 +14,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace fitting;
+
 namespace {
 
 constexpr double kLeastSd = 1e-5;  // m: a landmark that is held is laid as exactly as that
@@ -26,16 +28,16 @@ void require_summable(const Effect& effect) {
   const bool of_sessions = effect.per_session ||
                            std::any_of(effect.shape.begin(), effect.shape.end(), speaks_of_session);
   if (of_sessions || is_laid_out(effect.channel)) {
-    throw std::invalid_argument(
-        joined("effect ", effect.name, ": sessions that are added one after the other have no ",
-               of_sessions ? "effect of their own" : "delay and no steering to fit",
-               ", expected a fit of all at once"));
+    throw std::invalid_argument(text::joined(
+        "effect ", effect.name, ": sessions that are added one after the other have no ",
+        of_sessions ? "effect of their own" : "delay and no steering to fit",
+        ", expected a fit of all at once"));
   }
 }
 
 void require_summable(const Model& model, double tolerance) {
   for (const Effect& effect : model.effects) require_summable(effect);
-  if (std::ranges::any_of(model.noise.processes, has_used_tails)) {
+  if (std::ranges::any_of(model.noise.processes, estimation::has_used_tails)) {
     throw std::invalid_argument(
         "noise with heavy tails: sessions that are added one after the other have none, expected a "
         "fit of all at once");
@@ -64,7 +66,7 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
   }
 
   void add(const DrivenRecording& recording) {
-    require_well_formed(recording, model().robot);
+    drive::require_well_formed(recording, model().robot);
     if (recording.sightings.empty()) {
       throw InputError(recording.name, 0,
                        "sights no landmark, by which sessions are tied, expected some");
@@ -82,21 +84,22 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
     }
     std::vector<std::string> left_out = left_out_;
     for (const std::string& text : left_out_texts(fit)) {
-      left_out.push_back(joined(recording.name, ": ", text));
+      left_out.push_back(text::joined(recording.name, ": ", text));
     }
-    SessionRows rows;
-    const RecordingGauge gauge = choose_gauge(fit.problem);
+    estimation::SessionRows rows;
+    const estimation::RecordingGauge gauge = estimation::choose_gauge(fit.problem);
     rows.tells_position = !gauge.hold_landmark;
     rows.tells_direction = !gauge.hold_heading;
     const Frame frame{rows.tells_position, rows.tells_direction};
-    rows.weights = weights_without(fit.adjustment.left_out, fit.problem.measurements.size());
+    rows.weights =
+        estimation::weights_without(fit.adjustment.left_out, fit.problem.measurements.size());
     rows.border = std::move(fit.columns.border);
     if (options_.fit.fit_effects) {
-      for (EffectPattern& effect : rows.border) effect.held.reset();
+      for (estimation::EffectPattern& effect : rows.border) effect.held.reset();
     }
     rows.state = std::move(fit.adjustment.state);
     rows.problem = std::move(fit.problem);
-    drop_survey(rows);
+    estimation::drop_survey(rows);
     sessions_.add(std::move(rows), known_of(recording));
     if (first) {
       model_ = std::move(fit.model);
@@ -109,8 +112,8 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
 
   [[nodiscard]] const Model& model() const { return model_; }
   [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
-  [[nodiscard]] SummarisedSessions& sessions() { return sessions_; }
-  [[nodiscard]] const SummarisedSessions& sessions() const { return sessions_; }
+  [[nodiscard]] estimation::SummarisedSessions& sessions() { return sessions_; }
+  [[nodiscard]] const estimation::SummarisedSessions& sessions() const { return sessions_; }
 
   [[nodiscard]] std::vector<EffectEstimate> effects() const {
     std::vector<EffectEstimate> result;
@@ -148,9 +151,9 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
     FitState fit = fit_recordings({recording}, model_, how);
     for (const EffectEstimate& one : fit.effects) {
       if (one.not_fitted.empty()) continue;
-      throw SolveError(joined(recording.name, ": the first session does not show a coefficient of ",
-                              one.effect.name,
-                              "; begin with one that does, or fit several at once"));
+      throw SolveError(
+          text::joined(recording.name, ": the first session does not show a coefficient of ",
+                       one.effect.name, "; begin with one that does, or fit several at once"));
     }
     return fit;
   }
@@ -188,10 +191,11 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
     // Where the map has one known place, to turn about, a second gives a direction.
     const bool direction = position || surveyed.heading || recording.drive.has_compass();
     if (!(position && !frame_.position) && !(direction && !frame_.direction)) return;
-    throw SolveError(joined(recording.name, " has ",
-                            position ? "a survey, truth or fixes" : "a direction (compass, survey)",
-                            ", and the first session too little of it to lay the frame: the map "
-                            "would turn or shift; expected such a session first"));
+    throw SolveError(
+        text::joined(recording.name, " has ",
+                     position ? "a survey, truth or fixes" : "a direction (compass, survey)",
+                     ", and the first session too little of it to lay the frame: the map "
+                     "would turn or shift; expected such a session first"));
   }
 
   /// What surveys, this one and those before, say of the map with this session, and not of the map
@@ -224,8 +228,9 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
     return news;
   }
 
-  [[nodiscard]] std::vector<KnownPlace> known_of(const DrivenRecording& recording) const {
-    std::vector<KnownPlace> known;
+  [[nodiscard]] std::vector<estimation::KnownPlace> known_of(
+      const DrivenRecording& recording) const {
+    std::vector<estimation::KnownPlace> known;
     if (!options_.fit.use_survey) return known;
     for (const SurveyPoint& one : recording.survey) {
       const double sd = std::isnan(one.sd) ? model_.noise.survey : one.sd;
@@ -246,7 +251,7 @@ class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
 
   SummarisedFitOptions options_;
   Model model_;
-  SummarisedSessions sessions_;
+  estimation::SummarisedSessions sessions_;
   Frame frame_;
   std::map<std::string, SurveyPoint> survey_;  ///< of all sessions, the last of each landmark
   std::vector<std::string> left_out_;

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::fleet {
 
 /// Days since 1970-01-01 of YYYY-MM-DD; none: it is no date. Of two libraries, hence inline.
 [[nodiscard]] inline std::optional<int> day_in(const std::string& date) {
@@ -30,4 +30,4 @@ namespace trussmap {
   return static_cast<int>(std::chrono::sys_days{day}.time_since_epoch().count());
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fleet

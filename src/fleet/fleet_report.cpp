@@ -20,6 +20,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace fleet;
+
 namespace {
 
 constexpr std::size_t kMostFindings = 8;
@@ -32,7 +34,7 @@ constexpr double kBetter = 1e-3;
 constexpr double kKinds = 4.0;
 
 double score_of(const Eigen::VectorXd& g, const Eigen::MatrixXd& S) {
-  return std::max(0.0, g.dot(DenseLdlt(S).solve(g)));
+  return std::max(0.0, g.dot(linalg::DenseLdlt(S).solve(g)));
 }
 
 /// What is beyond the remainder of `found`.
@@ -171,21 +173,23 @@ Claim claim_of(std::size_t at, const Conditioned& left, const SearchedFleet& fle
   for (const FleetMember& member : members) found += found_in(fleet.sums, left, member);
   const PooledTest pooled = pooled_test(fleet.sums, left.all, block, phi);
   const double common = beyond(pooled.score / phi, found);
-  double p = chi2_p_value(common, pooled.dof);
+  double p = statistics::chi2_p_value(common, pooled.dof);
   double whole = 0.0;
   int whole_dof = 0;
   double gain = 0.0;
   for (const FleetMember& member : members) {
     const MemberClaim one = claim_of_member(fleet.sums, block, member, left);
     if (one.dof == 0) continue;
-    p = std::min(p, bonferroni(chi2_p_value(one.together, one.sizes), robots));
-    p = std::min(p, bonferroni(chi2_p_value(one.apart, one.dof), robots));
+    p = std::min(p,
+                 statistics::bonferroni(statistics::chi2_p_value(one.together, one.sizes), robots));
+    p = std::min(p, statistics::bonferroni(statistics::chi2_p_value(one.apart, one.dof), robots));
     whole += one.apart;
     whole_dof += one.dof;
-    gain += std::max(0.0, one.apart - chi2_quantile(1.0 - fleet.level / robots, one.dof));
+    gain +=
+        std::max(0.0, one.apart - statistics::chi2_quantile(1.0 - fleet.level / robots, one.dof));
   }
-  p = std::min(p, chi2_p_value(whole, whole_dof));
-  return {at, bonferroni(p, kKinds * fleet.candidates), std::max(gain, common)};
+  p = std::min(p, statistics::chi2_p_value(whole, whole_dof));
+  return {at, statistics::bonferroni(p, kKinds * fleet.candidates), std::max(gain, common)};
 }
 
 Blocks selected(const SearchedFleet& fleet) {
@@ -236,7 +240,7 @@ double worth_of(const Blocks& blocks, const SearchedFleet& fleet) {
 /// |P v|/|v| of the trace v of what all robots together say; of the same number of shapes.
 double cosine(const FleetBlock& block, const FleetBlock& rival, const Conditioned& left) {
   const Eigen::MatrixXd S = left.all.S(block.columns, block.columns);
-  const Eigen::VectorXd v = DenseLdlt(S).solve(left.all.g(block.columns));
+  const Eigen::VectorXd v = linalg::DenseLdlt(S).solve(left.all.g(block.columns));
   const double length = v.dot(S * v);
   const Eigen::MatrixXd R = left.all.S(rival.columns, rival.columns);
   if (!(length > 0.0) || !(R.diagonal().maxCoeff() > 0.0)) return 0.0;
@@ -297,7 +301,7 @@ std::vector<std::vector<DayEstimate>> estimates_of(const FleetBlock& block, cons
       if (columns.size() != block.columns.size()) continue;
       ColumnSums after = one;
       after.sweep(columns);
-      const Eigen::MatrixXd C = DenseLdlt(one.S(columns, columns)).inverse();
+      const Eigen::MatrixXd C = linalg::DenseLdlt(one.S(columns, columns)).inverse();
       const Eigen::VectorXd step = -C * one.g(columns);
       for (std::size_t k = 0; k < columns.size(); ++k) {
         const auto c = static_cast<Eigen::Index>(k);

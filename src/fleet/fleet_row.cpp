@@ -23,25 +23,27 @@ constexpr double kStillOffset = 1e-7;
 /// Coefficients as the model states them: the same reference for every robot.
 ModelFit fit_at_reference(const std::vector<DrivenRecording>& recordings, const Model& model,
                           const FitOptions& options) {
-  require_well_formed(recordings, model.robot);
-  FitterOptions how = fitter_options(options);
+  drive::require_well_formed(recordings, model.robot);
+  fitting::FitterOptions how = fitting::fitter_options(options);
   how.fit_effects = false;
   how.still_offset = kStillOffset;
-  return model_fit(fit_recordings(recordings, model, how), options);
+  return fitting::model_fit(fitting::fit_recordings(recordings, model, how), options);
 }
 
 /// The catalogue's with nothing open: their shapes are the same for every robot.
-std::vector<Effect> pooling_candidates(const FitState& fit, const ScoreTest& tests) {
+std::vector<Effect> pooling_candidates(const fitting::FitState& fit,
+                                       const criticism::ScoreTest& tests) {
   std::vector<Effect> effects;
-  for (const Candidate& one : candidates_for(fit, tests.context())) {
-    if (one.form == Form::catalogue && one.parameters.empty()) effects.push_back(one.effect);
+  for (const criticism::Candidate& one : criticism::candidates_for(fit, tests.context())) {
+    if (one.form == criticism::Form::catalogue && one.parameters.empty())
+      effects.push_back(one.effect);
   }
   return effects;
 }
 
 /// Appends an effect's columns; M gets them as they are.
-void take(FleetRow& row, std::vector<Eigen::MatrixXd>& parts, const Effect& effect, Score& score,
-          bool of_model) {
+void take(FleetRow& row, std::vector<Eigen::MatrixXd>& parts, const Effect& effect,
+          criticism::Score& score, bool of_model) {
   for (std::size_t k = 0; k < effect.shape.size(); ++k) {
     row.columns.push_back({of_model, effect.name, std::string(name_of(effect.channel)),
                            effect.shape[k].text(), static_cast<int>(k)});
@@ -57,7 +59,7 @@ void take(FleetRow& row, std::vector<Eigen::MatrixXd>& parts, const Effect& effe
 }  // namespace
 
 int day_number(const std::string& date) {
-  if (const std::optional<int> day = day_in(date)) return *day;
+  if (const std::optional<int> day = fleet::day_in(date)) return *day;
   throw InputError("date", 0, fmt::format("is \"{}\", expected YYYY-MM-DD", date));
 }
 
@@ -73,7 +75,7 @@ FleetRow fleet_row(const std::string& robot, const std::string& date,
                                  one.name));
   }
   const ModelFit fitted = fit_at_reference(recordings, model, fit);
-  const ScoreTest tests(*fitted.state);
+  const criticism::ScoreTest tests(*fitted.state);
   FleetRow row;
   row.robot = robot;
   row.date = date;
@@ -88,7 +90,7 @@ FleetRow fleet_row(const std::string& robot, const std::string& date,
   const std::vector<Effect> candidates = pooling_candidates(*fitted.state, tests);
   std::vector<Eigen::MatrixXd> parts;
   const auto take_all = [&](const std::vector<Effect>& effects, bool of_model) {
-    std::vector<Score> scores = tests.test(effects);
+    std::vector<criticism::Score> scores = tests.test(effects);
     for (std::size_t k = 0; k < effects.size(); ++k) {
       take(row, parts, effects[k], scores[k], of_model);
     }

@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::fleet {
 namespace {
 
 constexpr char kField = '\x1f';
@@ -62,8 +62,8 @@ Eigen::MatrixXd unpacked(const std::vector<double>& values, Eigen::Index count) 
 std::string text_of(const std::vector<FleetColumn>& columns) {
   std::string text;
   for (const FleetColumn& one : columns) {
-    text += joined(one.of_model ? 1 : 0, kField, one.effect, kField, one.channel, kField, one.shape,
-                   kField, one.place, kRecord);
+    text += text::joined(one.of_model ? 1 : 0, kField, one.effect, kField, one.channel, kField,
+                         one.shape, kField, one.place, kRecord);
   }
   return text;
 }
@@ -97,15 +97,15 @@ std::vector<FleetColumn> columns_in(const std::string& text) {
   return columns;
 }
 
-int count_in(const Statement& row, int column) {
+int count_in(const store::Statement& row, int column) {
   const std::int64_t count = row.integer(column);
   if (count < 0 || count > std::numeric_limits<int>::max()) {
-    throw std::invalid_argument(joined("a count is ", count, ", expected 0 or more"));
+    throw std::invalid_argument(text::joined("a count is ", count, ", expected 0 or more"));
   }
   return static_cast<int>(count);
 }
 
-FleetRow row_in(const Statement& day) {
+FleetRow row_in(const store::Statement& day) {
   FleetRow row;
   row.robot = day.text(0);
   row.date = day.text(1);
@@ -134,7 +134,7 @@ FleetRow row_in(const Statement& day) {
 
 }  // namespace
 
-void make_fleet_tables(const Database& database) {
+void make_fleet_tables(const store::Database& database) {
   database.run(R"sql(
     CREATE TABLE model(number INTEGER PRIMARY KEY CHECK (number = 1), text TEXT NOT NULL);
     CREATE TABLE days(robot TEXT NOT NULL, date TEXT NOT NULL, recordings INTEGER NOT NULL,
@@ -150,14 +150,14 @@ void make_fleet_tables(const Database& database) {
 
 void check_fleet_row(const FleetRow& row) {
   const auto plain = [](const std::string& text, const char* what) {
-    if (!is_plain_text(text)) {
+    if (!text::is_plain_text(text)) {
       throw std::invalid_argument(
-          joined(what, " holds a control character, expected printable text"));
+          text::joined(what, " holds a control character, expected printable text"));
     }
   };
   const auto at_least_0 = [](double value, const char* what) {
     if (!(value >= 0.0) || !std::isfinite(value)) {
-      throw std::invalid_argument(joined(what, " is no number of 0 or more"));
+      throw std::invalid_argument(text::joined(what, " is no number of 0 or more"));
     }
   };
   if (!day_in(row.date)) throw std::invalid_argument("the day is none, expected YYYY-MM-DD");
@@ -183,18 +183,19 @@ void check_fleet_row(const FleetRow& row) {
   for (Eigen::Index k = 0; k < row.S.rows(); ++k) at_least_0(row.S(k, k), "a sum of squares");
 }
 
-std::string fleet_model_in(const Database& database) {
-  Statement get(database, "SELECT text FROM model");
+std::string fleet_model_in(const store::Database& database) {
+  store::Statement get(database, "SELECT text FROM model");
   return get.step() ? get.text(0) : std::string();
 }
 
-void put_fleet_row(const Database& database, const FleetRow& row) {
+void put_fleet_row(const store::Database& database, const FleetRow& row) {
   std::vector<double> facts;
   for (std::size_t k = 0; k < row.columns.size(); ++k) {
     facts.insert(facts.end(), {row.reference[k], row.prior_sd[k], row.largest[k], row.whole[k]});
   }
   const std::vector<double> S = packed(row.S);
-  Statement day(database, "REPLACE INTO days VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  store::Statement day(database,
+                       "REPLACE INTO days VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   day.bind(0, row.robot).bind(1, row.date).bind(2, row.recordings).bind(3, row.chi2);
   day.bind(4, row.dof).bind(5, row.held_out_legs).bind(6, row.held_out_rms);
   day.bind(7, row.held_out_stretch).bind(8, row.held_out_orientation);
@@ -202,19 +203,20 @@ void put_fleet_row(const Database& database, const FleetRow& row) {
   day.bind_bytes(11, bytes_of(row.g.data(), static_cast<std::size_t>(row.g.size())));
   day.bind_bytes(12, bytes_of(S.data(), S.size()));
   day.run();
-  Statement clear(database, "DELETE FROM metadata WHERE robot = ? AND date = ?");
+  store::Statement clear(database, "DELETE FROM metadata WHERE robot = ? AND date = ?");
   clear.bind(0, row.robot).bind(1, row.date).run();
-  Statement one(database, "INSERT INTO metadata VALUES (?, ?, ?, ?)");
+  store::Statement one(database, "INSERT INTO metadata VALUES (?, ?, ?, ?)");
   for (const auto& [key, value] : row.metadata) {
     one.bind(0, row.robot).bind(1, row.date).bind(2, key).bind(3, value).run();
   }
 }
 
-std::vector<FleetRow> fleet_rows_in(const Database& database) {
+std::vector<FleetRow> fleet_rows_in(const store::Database& database) {
   const std::string model = fleet_model_in(database);
   std::vector<FleetRow> rows;
-  Statement days(database, "SELECT * FROM days ORDER BY robot, date");
-  Statement metadata(database, "SELECT key, value FROM metadata WHERE robot = ? AND date = ?");
+  store::Statement days(database, "SELECT * FROM days ORDER BY robot, date");
+  store::Statement metadata(database,
+                            "SELECT key, value FROM metadata WHERE robot = ? AND date = ?");
   while (days.step()) {
     try {
       FleetRow row = row_in(days);
@@ -225,10 +227,11 @@ std::vector<FleetRow> fleet_rows_in(const Database& database) {
       check_fleet_row(row);
       rows.push_back(std::move(row));
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(joined("row ", rows.size() + 1, " of days: ", error.what()));
+      throw std::invalid_argument(
+          text::joined("row ", rows.size() + 1, " of days: ", error.what()));
     }
   }
   return rows;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fleet

@@ -15,6 +15,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace fleet;
+
 namespace {
 
 /// The model's first, each effect's in order.
@@ -55,6 +57,10 @@ std::vector<FleetBlock> blocks_of(const Places& places) {
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::fleet {
+
 double ColumnSums::dispersion() const {
   return dof > 0 ? std::max(1.0, chi2 / dof) : 1.0;
 }
@@ -62,7 +68,7 @@ double ColumnSums::dispersion() const {
 void ColumnSums::sweep(const std::vector<Eigen::Index>& columns) {
   for (const Eigen::Index p : columns) {
     const double pivot = S(p, p);
-    if (!(pivot > kLeastShare * whole[p])) continue;
+    if (!(pivot > fitting::kLeastShare * whole[p])) continue;
     const Eigen::VectorXd column = S.col(p) / pivot;
     const double g_p = g[p];
     g -= column * g_p;
@@ -79,8 +85,8 @@ bool FleetSums::is_seen(const ColumnSums& sums, Eigen::Index column, double phi)
   const auto k = static_cast<std::size_t>(column);
   const double square = sums.S(column, column);
   const double uncertainty = largest[k] * std::sqrt(phi / std::max(square, 1e-300));
-  return largest[k] > 0.0 && square > kLeastShare * sums.whole[column] &&
-         uncertainty < kLargestUncertainty * prior_sd[k];
+  return largest[k] > 0.0 && square > fitting::kLeastShare * sums.whole[column] &&
+         uncertainty < fitting::kLargestUncertainty * prior_sd[k];
 }
 
 FleetSums fleet_sums(const std::vector<FleetRow>& rows) {
@@ -164,14 +170,15 @@ PooledTest pooled_test(const FleetSums& fleet, const ColumnSums& sums, const Fle
     const double ratio = fleet.largest[at] / fleet.prior_sd[at];
     with_prior(a, a) += phi * ratio * ratio;
   }
-  const DenseLdlt factor(with_prior);
+  const linalg::DenseLdlt factor(with_prior);
   const Eigen::VectorXd estimate = -factor.solve(g);
   const Eigen::MatrixXd covariance = factor.inverse();
   test.score = std::max(0.0, -g.dot(estimate));
   const Eigen::VectorXd scale = with_prior.diagonal().cwiseSqrt().cwiseInverse();
-  const SymmetricModes modes = symmetric_modes(scale.asDiagonal() * S * scale.asDiagonal());
+  const linalg::SymmetricModes modes =
+      linalg::symmetric_modes(scale.asDiagonal() * S * scale.asDiagonal());
   for (Eigen::Index k = 0; k < dof; ++k) test.dof += modes.eigenvalues[k] > 1e-6 ? 1 : 0;
-  test.p_value = chi2_p_value(test.score, test.dof);
+  test.p_value = statistics::chi2_p_value(test.score, test.dof);
   for (Eigen::Index k = 0; k < dof; ++k) {
     const std::size_t place = seen[static_cast<std::size_t>(k)];
     test.coefficients[place] += estimate[k];
@@ -180,9 +187,17 @@ PooledTest pooled_test(const FleetSums& fleet, const ColumnSums& sums, const Fle
   return test;
 }
 
+}  // namespace trussmap::fleet
+
+namespace trussmap {
+
 std::vector<PooledTest> pooled_tests(const std::vector<FleetRow>& rows) {
   return pooled_tests(fleet_sums(rows));
 }
+
+}  // namespace trussmap
+
+namespace trussmap::fleet {
 
 std::vector<PooledTest> pooled_tests(const FleetSums& fleet) {
   ColumnSums left = fleet.all;
@@ -197,4 +212,4 @@ std::vector<PooledTest> pooled_tests(const FleetSums& fleet) {
   return tests;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fleet

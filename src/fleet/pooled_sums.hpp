@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fleet {
 
 /// An effect's columns.
 struct FleetBlock {
@@ -62,4 +62,4 @@ struct FleetSums {
 /// Of every candidate by itself.
 [[nodiscard]] std::vector<PooledTest> pooled_tests(const FleetSums& fleet);
 
-}  // namespace trussmap
+}  // namespace trussmap::fleet

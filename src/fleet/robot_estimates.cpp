@@ -11,7 +11,7 @@
 #include <cmath>
 #include <set>
 
-namespace trussmap {
+namespace trussmap::fleet {
 namespace {
 
 constexpr double kMostRobots = 0.9;          // whose remainder a mean has to be beyond
@@ -109,7 +109,7 @@ struct Slopes {
 Slopes slopes_of(FleetCoefficient& result, const std::vector<Line>& lines, double level,
                  double tests) {
   Slopes slopes;
-  std::vector<MemberEstimate> estimates;
+  std::vector<statistics::MemberEstimate> estimates;
   for (std::size_t k = 0; k < lines.size(); ++k) {
     FleetRobot& robot = result.members[k];
     robot.has_slope = lines[k].has_slope;
@@ -120,16 +120,16 @@ Slopes slopes_of(FleetCoefficient& result, const std::vector<Line>& lines, doubl
     slopes.of.push_back(k);
   }
   if (estimates.empty()) return slopes;
-  const RandomEffects all = random_effects(estimates, 1, level / tests);
+  const statistics::RandomEffects all = statistics::random_effects(estimates, 1, level / tests);
   result.slope = all.mean;
   result.slope_sd = all.sd;
-  result.p_slope = bonferroni(all.p_mean, tests);
+  result.p_slope = statistics::bonferroni(all.p_mean, tests);
   result.all_drift = estimates.size() > 1 && result.p_slope < level;
   slopes.holm = all.p_member;
-  for (const MemberEstimate& one : estimates) {
+  for (const statistics::MemberEstimate& one : estimates) {
     const double z2 =
         (one.value - all.mean) * (one.value - all.mean) / (one.variance + all.tau * all.tau);
-    slopes.p.push_back(chi2_p_value(z2, 1));
+    slopes.p.push_back(statistics::chi2_p_value(z2, 1));
   }
   return slopes;
 }
@@ -146,14 +146,14 @@ bool find_drifts(FleetCoefficient& result, const Slopes& slopes, const std::vect
   for (std::size_t k = 0; k < slopes.of.size(); ++k) {
     if (suspects[slopes.of[k]]) p.push_back(slopes.p[k]);
   }
-  const std::vector<double> among = holm(p);
+  const std::vector<double> among = statistics::holm(p);
   bool any = false;
   std::size_t next = 0;
   for (std::size_t k = 0; k < slopes.of.size(); ++k) {
     FleetRobot& robot = result.members[slopes.of[k]];
     double least = slopes.holm[k];
     if (suspects[slopes.of[k]]) least = std::min(least, among[next++]);
-    robot.p_drifts = bonferroni(least, kFamilies * tests);
+    robot.p_drifts = statistics::bonferroni(least, kFamilies * tests);
     const bool drifts = robot.p_drifts < level;
     any = any || (drifts && !robot.drifts);
     robot.drifts = drifts;
@@ -195,18 +195,18 @@ Grouping grouping_by(const std::string& key, const FleetMembers& fleet,
 /// p of a mean that is as far from 0 as the remainder at most.
 double p_beyond(double mean, double sd, double remainder, int dof) {
   const double z = std::max(0.0, std::abs(mean) - remainder) / sd;
-  return dof > 0 ? 2.0 * student_p_value(z, dof) : chi2_p_value(z * z, 1);
+  return dof > 0 ? 2.0 * statistics::student_p_value(z, dof) : statistics::chi2_p_value(z * z, 1);
 }
 
 struct Fitted {
   std::vector<std::size_t> of;  ///< members
-  RandomEffects effects;
+  statistics::RandomEffects effects;
 };
 
 Fitted fitted(const std::vector<Line>& lines, const std::vector<bool>& drifts,
               const Grouping& grouping, double level) {
   Fitted result;
-  std::vector<MemberEstimate> members;
+  std::vector<statistics::MemberEstimate> members;
   for (std::size_t k = 0; k < lines.size(); ++k) {
     if (grouping.group[k] < 0) continue;
     members.push_back({drifts[k] ? lines[k].first : lines[k].mean,
@@ -214,7 +214,7 @@ Fitted fitted(const std::vector<Line>& lines, const std::vector<bool>& drifts,
                        static_cast<std::size_t>(grouping.group[k])});
     result.of.push_back(k);
   }
-  result.effects = random_effects(members, grouping.values.size(), level);
+  result.effects = statistics::random_effects(members, grouping.values.size(), level);
   return result;
 }
 
@@ -234,10 +234,10 @@ FleetKey key_of(const std::string& key, double p, const Grouping& by, const Fitt
                 double tests) {
   FleetKey found{key, p, {}, {}};
   for (std::size_t g = 0; g < by.values.size(); ++g) {
-    const GroupMean& group = fit.effects.groups[g];
+    const statistics::GroupMean& group = fit.effects.groups[g];
     found.groups.push_back(
         {by.values[g], group.members, group.mean, group.sd,
-         bonferroni(group.p_value, tests * static_cast<double>(by.values.size()))});
+         statistics::bonferroni(group.p_value, tests * static_cast<double>(by.values.size()))});
   }
   return found;
 }
@@ -255,10 +255,12 @@ KeyExplanation key_explanation(const FleetMembers& seen, const std::vector<Line>
     const Grouping by = grouping_by(key, seen, all);
     if (by.values.size() < 2) continue;
     const Fitted one = fitted(lines, drifts, by, level / tests);
-    const double p = bonferroni(one.effects.p_groups, key_tests);
+    const double p = statistics::bonferroni(one.effects.p_groups, key_tests);
     const auto [least, most] =
         std::minmax_element(one.effects.groups.begin(), one.effects.groups.end(),
-                            [](const GroupMean& a, const GroupMean& b) { return a.mean < b.mean; });
+                            [](const statistics::GroupMean& a, const statistics::GroupMean& b) {
+                              return a.mean < b.mean;
+                            });
     if (!(p < level) || most->mean - least->mean < 2.0 * remainder) continue;
     if (!best.goes_with.empty() && by.group == best.grouping.group) {
       best.goes_with.front().same_as.push_back(key);
@@ -288,11 +290,12 @@ double remainder_of(const std::vector<Line>& lines) {
 
 void take_means(FleetCoefficient& result, const KeyExplanation& found, double remainder,
                 double level, double tests) {
-  const RandomEffects& effects = found.fit.effects;
+  const statistics::RandomEffects& effects = found.fit.effects;
   result.goes_with = found.goes_with;
   result.mean = effects.mean;
   result.sd = effects.sd;
-  result.p_common = bonferroni(p_beyond(effects.mean, effects.sd, remainder, effects.Q_dof), tests);
+  result.p_common =
+      statistics::bonferroni(p_beyond(effects.mean, effects.sd, remainder, effects.Q_dof), tests);
   result.common = result.p_common < level;
   if (!result.goes_with.empty()) {
     const std::vector<FleetGroup>& groups = result.goes_with.front().groups;
@@ -301,14 +304,14 @@ void take_means(FleetCoefficient& result, const KeyExplanation& found, double re
     });
   }
   result.tau = effects.tau;
-  result.p_tau = bonferroni(effects.p_tau, tests);
+  result.p_tau = statistics::bonferroni(effects.p_tau, tests);
   result.Q = effects.Q;
   result.Q_dof = effects.Q_dof;
 }
 
 void take_robots(FleetCoefficient& result, const KeyExplanation& found,
                  const std::vector<Line>& lines, double tests) {
-  const RandomEffects& effects = found.fit.effects;
+  const statistics::RandomEffects& effects = found.fit.effects;
   for (std::size_t k = 0; k < lines.size(); ++k) {
     FleetRobot& robot = result.members[k];
     robot.value = robot.drifts ? lines[k].first : lines[k].mean;
@@ -319,10 +322,11 @@ void take_robots(FleetCoefficient& result, const KeyExplanation& found,
   for (std::size_t at = 0; at < found.fit.of.size(); ++at) {
     const std::size_t k = found.fit.of[at];
     FleetRobot& robot = result.members[k];
-    robot.p_differs = bonferroni(effects.p_member[at], tests);
+    robot.p_differs = statistics::bonferroni(effects.p_member[at], tests);
     robot.differs = effects.outlying[at];
     if (robot.differs) continue;
-    const GroupMean& group = effects.groups[static_cast<std::size_t>(found.grouping.group[k])];
+    const statistics::GroupMean& group =
+        effects.groups[static_cast<std::size_t>(found.grouping.group[k])];
     const double tau2 = effects.tau * effects.tau;
     const double share = tau2 / (tau2 + robot.sd * robot.sd);
     robot.shrunken = group.mean + share * (robot.value - group.mean);
@@ -399,4 +403,4 @@ FleetCoefficient analyse_coefficient(const FleetMembers& fleet,
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fleet

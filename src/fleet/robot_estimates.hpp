@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fleet {
 
 /// Rows of one robot, in the order of their dates.
 struct FleetMember {
@@ -40,4 +40,4 @@ struct DayEstimate {
                                                    const std::vector<DayEstimate>& days,
                                                    double level, double tests);
 
-}  // namespace trussmap
+}  // namespace trussmap::fleet

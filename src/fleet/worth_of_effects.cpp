@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::fleet {
 namespace {
 
 /// The days' sums of these effects' columns alone.
@@ -72,7 +72,7 @@ double worth_of_effects(const std::vector<const ColumnSums*>& days,
       const Explained without = explained(part, kept);
       kept[k] = true;
       const int dof = with.dof - without.dof;
-      const double penalty = dof > 0 ? chi2_quantile(1.0 - level, dof) : 0.0;
+      const double penalty = dof > 0 ? statistics::chi2_quantile(1.0 - level, dof) : 0.0;
       const double gain = with.chi2 - without.chi2 - penalty;
       penalties += penalty;
       if (dof > 0 && gain >= least) continue;
@@ -86,4 +86,4 @@ double worth_of_effects(const std::vector<const ColumnSums*>& days,
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::fleet

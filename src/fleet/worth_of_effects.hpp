@@ -17,10 +17,10 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::fleet {
 
 /// `days` of one robot, what the model has swept; each day has coefficients of its own.
 [[nodiscard]] double worth_of_effects(const std::vector<const ColumnSums*>& days,
                                       const std::vector<FleetBlock>& effects, double level);
 
-}  // namespace trussmap
+}  // namespace trussmap::fleet

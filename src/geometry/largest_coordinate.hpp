@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::geometry {
 
 [[nodiscard]] inline double largest_coordinate(const std::vector<Vector2>& points) {
   double largest = 1.0;
@@ -27,4 +27,4 @@ namespace trussmap {
   return largest;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::geometry

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::geometry {
 
 /// So that the next push_back cannot fail.
 template <typename Value>
@@ -14,4 +14,4 @@ void make_room(std::vector<Value>& values) {
   if (values.size() == values.capacity()) values.reserve(2 * values.size() + 2);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::geometry

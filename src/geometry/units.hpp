@@ -6,7 +6,7 @@
 
 #include <numbers>
 
-namespace trussmap {
+namespace trussmap::geometry {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;  // in a radian
 constexpr double kDegree = std::numbers::pi / 180.0;   // rad
@@ -14,4 +14,4 @@ constexpr double kMillimetres = 1000.0;                // in a metre
 constexpr double kFullTurn = 2.0 * std::numbers::pi;   // rad
 constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
 
-}  // namespace trussmap
+}  // namespace trussmap::geometry

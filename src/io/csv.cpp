@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <unordered_set>
 
-namespace trussmap {
+namespace trussmap::io {
 
 CsvReader::CsvReader(std::string_view text, std::string file, CsvForm form)
     : text_(text), file_(std::move(file)), form_(form) {
@@ -181,7 +181,7 @@ std::string csv_field(std::string_view text) {
 }
 
 std::string csv_number(double value) {
-  return std::isnan(value) ? "" : shortest_text(value);
+  return std::isnan(value) ? "" : text::shortest_text(value);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::io

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::io {
 
 /// How strictly a table is read.
 enum class CsvForm {
@@ -83,4 +83,4 @@ class CsvReader {
 /// Shortest text that reads back to the same number; empty for NaN.
 [[nodiscard]] std::string csv_number(double value);
 
-}  // namespace trussmap
+}  // namespace trussmap::io

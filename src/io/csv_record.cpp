@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/csv_record.hpp"
 
-namespace trussmap {
+namespace trussmap::io {
 
 std::size_t CsvRecord::read(std::string_view text, std::size_t at, char separator, bool loose) {
   text_ = text;
@@ -126,4 +126,4 @@ std::string shown_field(std::string_view field) {
   return "\"" + text + (field.size() > kLongest ? "...\"" : "\"");
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::io

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::io {
 
 class CsvRecord {
  public:
@@ -54,4 +54,4 @@ class CsvRecord {
 /// A field for a message: in quotes, on one line, its first 40 bytes.
 [[nodiscard]] std::string shown_field(std::string_view field);
 
-}  // namespace trussmap
+}  // namespace trussmap::io

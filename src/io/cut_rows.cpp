@@ -47,7 +47,7 @@ struct LastColumn {
 
 LastColumn last_column(const fs::path& file) {
   const std::string text = read_file(file);
-  CsvReader csv(text, file.string());
+  io::CsvReader csv(text, file.string());
   const int column = static_cast<int>(csv.columns().size()) - 1;
   LastColumn result{csv.columns().back(), {}, 0};
   while (csv.next()) {
@@ -65,8 +65,8 @@ std::string what_name_lacks(const LastColumn& column, const Recording& recording
   for (const SurveyPoint& one : recording.survey) others.insert(one.landmark);
   const auto after = others.lower_bound(name);
   if (after == others.end() || *after == name || !after->starts_with(name)) return {};
-  return joined("its landmark \"", name,
-                "\" is found nowhere else, where others go on from there (", *after, ")");
+  return text::joined("its landmark \"", name,
+                      "\" is found nowhere else, where others go on from there (", *after, ")");
 }
 
 std::string what_number_lacks(const LastColumn& column) {
@@ -77,10 +77,11 @@ std::string what_number_lacks(const LastColumn& column) {
     least = std::min(least, decimals_of(column.fields[k]));
     all = all && !column.fields[k].empty();
   }
-  if (last.empty()) return all ? joined("its ", column.name, " is empty, as in no other row") : "";
+  if (last.empty())
+    return all ? text::joined("its ", column.name, " is empty, as in no other row") : "";
   if (decimals_of(last) >= least) return {};
-  return joined("its ", column.name, " is ", last, ", where all other rows have ", least,
-                " decimals at least");
+  return text::joined("its ", column.name, " is ", last, ", where all other rows have ", least,
+                      " decimals at least");
 }
 
 std::optional<CheckFinding> cut_row_of(const fs::path& file, const Recording& recording) {
@@ -91,7 +92,7 @@ std::optional<CheckFinding> cut_row_of(const fs::path& file, const Recording& re
       column.name == "landmark" ? what_name_lacks(column, recording) : what_number_lacks(column);
   if (lacks.empty()) return std::nullopt;
   return CheckFinding{file.string(), column.name, "cut off",
-                      joined("the last line, ", column.line, ", has no end, and ", lacks),
+                      text::joined("the last line, ", column.line, ", has no end, and ", lacks),
                       "copy the file again, whole; or remove its last line"};
 }
 

@@ -15,13 +15,13 @@ namespace trussmap {
 std::string format_geojson(const FieldOfPlaces& field) {
   nlohmann::json features = nlohmann::json::array();
   for (const FieldCell& one : field.cells_driven()) {
-    features.push_back(geojson_square(one.centre, field.cell,
-                                      {{"channel", name_of(field.channel)},
-                                       {"unit", facts_of(field.channel).unit},
-                                       {"mean", one.mean},
-                                       {"sd", one.sd}}));
+    features.push_back(io::geojson_square(one.centre, field.cell,
+                                          {{"channel", name_of(field.channel)},
+                                           {"unit", facts_of(field.channel).unit},
+                                           {"mean", one.mean},
+                                           {"sd", one.sd}}));
   }
-  return geojson_text(features);
+  return io::geojson_text(features);
 }
 
 }  // namespace trussmap

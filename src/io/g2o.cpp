@@ -13,6 +13,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace io;
+
 namespace {
 
 constexpr std::string_view kKnownTags =

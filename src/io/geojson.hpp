@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::io {
 
 [[nodiscard]] inline nlohmann::json geojson_coordinates(const Vector2& place) {
   return {place.x(), place.y()};
@@ -52,4 +52,4 @@ namespace trussmap {
   return nlohmann::json{{"type", "FeatureCollection"}, {"features", features}}.dump(1) + "\n";
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::io

@@ -15,7 +15,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::io {
 
 /// One line, taken apart from the left.
 class GraphLine {
@@ -90,4 +90,4 @@ class GraphLine {
   const std::string& file_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::io

@@ -10,7 +10,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::io {
 namespace {
 
 /// The name as a whole number, if it is one and reads back the same.
@@ -99,4 +99,4 @@ LandmarkGraph to_landmark_graph(const PoseGraph& graph) {
   return map;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::io

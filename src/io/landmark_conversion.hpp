@@ -14,7 +14,7 @@
 #include "trussmap/landmark_map.hpp"
 #include "trussmap/pose_graph.hpp"
 
-namespace trussmap {
+namespace trussmap::io {
 
 /// Ids are the landmarks' names where these are all whole numbers, else 0, 1, ... Throws
 /// std::invalid_argument where a route has no traversal or its covariance is not positive definite.
@@ -24,4 +24,4 @@ namespace trussmap {
 /// point without an estimate, or information that is not positive definite.
 [[nodiscard]] LandmarkGraph to_landmark_graph(const PoseGraph& graph);
 
-}  // namespace trussmap
+}  // namespace trussmap::io

@@ -30,7 +30,7 @@ LandmarkGraph read_map(const std::filesystem::path& file) {
   }
   const PoseGraph graph = read_g2o(file.string());
   try {
-    return to_landmark_graph(graph);
+    return io::to_landmark_graph(graph);
   } catch (const std::invalid_argument& error) {
     throw InputError(file.string(), 0, error.what());
   }
@@ -48,7 +48,7 @@ std::string format_map(const LandmarkGraph& map, const std::filesystem::path& fi
                      "is named like no map, expected .graphml, .g2o, .geojson, .dot or .yaml");
   }
   try {
-    return format_g2o(to_pose_graph(map));
+    return format_g2o(io::to_pose_graph(map));
   } catch (const std::invalid_argument& error) {
     throw InputError(file.string(), 0, std::string("cannot hold this map: ") + error.what());
   }

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 namespace trussmap {
+using namespace io;
+
 namespace {
 
 using nlohmann::json;

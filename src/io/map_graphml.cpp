@@ -16,6 +16,8 @@
 #include <Eigen/LU>
 
 namespace trussmap {
+using namespace io;
+
 namespace {
 
 void write_data(std::string& text, const char* key, double value) {
@@ -112,7 +114,7 @@ void read_node(const XmlElement& element, const KeyNames& names, const std::stri
   if (name.empty()) {
     throw InputError(file, element.line, "a node has no id, expected a landmark's name");
   }
-  if (!is_plain_text(name)) {
+  if (!text::is_plain_text(name)) {
     throw InputError(file, element.line,
                      "a node's id holds a control character, expected printable text in UTF-8");
   }
@@ -200,7 +202,7 @@ std::string format_map_graphml(const LandmarkGraph& map, const std::string& comm
   text += "  <graph id=\"map\" edgedefault=\"undirected\">\n";
   for (int k = 0; k < map.landmarks(); ++k) {
     const Landmark& landmark = map.landmark(k);
-    text += "    <node id=\"" + xml_escaped(landmark.name) + "\">\n";
+    text += "    <node id=\"" + text::xml_escaped(landmark.name) + "\">\n";
     write_data(text, "n_x", landmark.position.x());
     write_data(text, "n_y", landmark.position.y());
     if (landmark.covariance) write_covariance(text, "n_", *landmark.covariance);
@@ -210,8 +212,8 @@ std::string format_map_graphml(const LandmarkGraph& map, const std::string& comm
   }
   for (int number = 0; number < map.routes(); ++number) {
     const Route& route = map.route(number);
-    text += "    <edge source=\"" + xml_escaped(map.landmark(route.source).name) + "\" target=\"" +
-            xml_escaped(map.landmark(route.target).name) + "\">\n";
+    text += "    <edge source=\"" + text::xml_escaped(map.landmark(route.source).name) +
+            "\" target=\"" + text::xml_escaped(map.landmark(route.target).name) + "\">\n";
     write_data(text, "e_traversals", route.traversals);
     write_data(text, "e_stretch", route.stretch);
     write_data(text, "e_orientation", route.orientation);

@@ -44,7 +44,7 @@ std::vector<std::optional<int>> yaml_ids_of(const LandmarkGraph& map) {
 
 /// Shortest text that reads back to the same number, in YAML 1.1 and 1.2: always with a point.
 std::string yaml_number(double value) {
-  std::string text = csv_number(value);
+  std::string text = io::csv_number(value);
   if (text.find('.') == std::string::npos) text.insert(std::min(text.find('e'), text.size()), ".0");
   return text;
 }

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::io {
 namespace {
 
 template <typename T>
@@ -96,7 +96,8 @@ MatHead mat_head(MatElements& parts) {
     if (head.dimensions.back() < 0) parts.fail("has an array with a negative size");
   }
   const MatElement name = parts.next();
-  if (name.type != kMatInt8 || !is_plain_text(name.data)) parts.fail("has an array without a name");
+  if (name.type != kMatInt8 || !text::is_plain_text(name.data))
+    parts.fail("has an array without a name");
   head.name = name.data;
   return head;
 }
@@ -115,4 +116,4 @@ void require_mat_header(std::string_view bytes, const std::string& file) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::io

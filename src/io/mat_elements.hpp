@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::io {
 
 inline constexpr std::size_t kMatHeader = 128;
 inline constexpr std::uint32_t kMatInt8 = 1;
@@ -94,4 +94,4 @@ struct MatHead {
 /// Throws InputError, saying what it is instead, where these are not a file's first bytes.
 void require_mat_header(std::string_view bytes, const std::string& file);
 
-}  // namespace trussmap
+}  // namespace trussmap::io

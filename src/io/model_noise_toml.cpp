@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::io {
 namespace {
 
 struct NoiseKey {
@@ -70,7 +70,8 @@ void check_process(const toml::table& table, const NoiseProcess& process) {
   if (!is_correlated(process.process) && process.length != 0.0) {
     refuse(table.get("length")->source(), "a process " + name + " has a length, expected none");
   }
-  const bool passes = acts_on(process.channel) == ActsOn::views && !acts_on_fixes(process.channel);
+  const bool passes = effects::acts_on(process.channel) == effects::ActsOn::views &&
+                      !effects::acts_on_fixes(process.channel);
   if (process.process == ProcessKind::per_pass && !passes) {
     refuse(table.source(), "channel " + std::string(name_of(process.channel)) +
                                " has no passes, expected lever, lever_left, range, range_scale, "
@@ -164,9 +165,9 @@ std::string noise_text(const Model& model) {
   const Noise defaults;
   const bool two =
       model.robot.drive == DriveKind::differential || model.robot.drive == DriveKind::unicycle;
-  const bool steers = is_of_drive(Channel::steer, model.robot);
+  const bool steers = effects::is_of_drive(Channel::steer, model.robot);
   if (!two) {
-    text += "wheel = " + toml_number(mean_wheel_noise(model.noise)) +
+    text += "wheel = " + toml_number(fitting::mean_wheel_noise(model.noise)) +
             "  # m^1/2: variance of each wheel's travel = wheel^2 * |travel|\n";
   }
   for (const NoiseKey& key : kNoise) {
@@ -183,4 +184,4 @@ std::string noise_text(const Model& model) {
   return text;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::io

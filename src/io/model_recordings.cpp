@@ -12,7 +12,7 @@ namespace trussmap {
 Model read_model(const std::filesystem::path& file, const std::vector<Recording>& recordings) {
   Model model = read_model(file);
   if (model.effects.empty()) return model;
-  std::vector<SessionPath> paths;
+  std::vector<fitting::SessionPath> paths;
   paths.reserve(recordings.size());
   std::vector<DrivenRecording> driven;
   driven.reserve(recordings.size());
@@ -20,11 +20,11 @@ Model read_model(const std::filesystem::path& file, const std::vector<Recording>
     driven.push_back(with_wheels(recording, model.robot));
     paths.push_back({Pose(), dead_reckoned_path(driven.back().drive, model.robot, model.noise)});
   }
-  const ShapeContext context(driven, model.robot, paths);
+  const fitting::ShapeContext context(driven, model.robot, paths);
   // One effect after the other, so that the one at fault is known by its line.
   for (const Effect& effect : model.effects) {
     try {
-      static_cast<void>(effect_columns({effect}, context));
+      static_cast<void>(fitting::effect_columns({effect}, context));
     } catch (const std::invalid_argument& error) {
       throw InputError(file.string(), effect.line, error.what());
     }

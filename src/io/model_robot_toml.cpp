@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::io {
 namespace {
 
 /// What [robot] holds of a drive besides its name.
@@ -294,4 +294,4 @@ std::string robot_text(const Robot& robot) {
   return text + mountings_text(robot.mounted);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::io

@@ -9,7 +9,7 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::io {
 
 /// [robot].
 [[nodiscard]] Robot read_robot(const toml::table& robot);
@@ -19,4 +19,4 @@ namespace trussmap {
 [[nodiscard]] Noise read_noise(const toml::table& noise);
 [[nodiscard]] std::string noise_text(const Model& model);
 
-}  // namespace trussmap
+}  // namespace trussmap::io

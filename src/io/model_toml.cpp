@@ -16,6 +16,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace io;
+
 namespace {
 
 Shape read_shape(const toml::node& node, const std::string& effect) {
@@ -30,7 +32,7 @@ Shape read_shape(const toml::node& node, const std::string& effect) {
 Effect spelt_out(const toml::table& table) {
   const toml::node* named = table.get("name");
   const std::string name = named == nullptr ? "" : toml_words(*named, "name");
-  if (!is_plain_text(name)) {
+  if (!text::is_plain_text(name)) {
     refuse(named->source(), "name holds a control character, expected printable text");
   }
   if (name.empty()) refuse(table.source(), "an effect has no name, expected name = \"...\"");
@@ -139,12 +141,16 @@ Model read_sections(const toml::table& root) {
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::io {
+
 Model model_of(const toml::table& root, const std::string& file) {
   try {
     Model model = read_sections(root);
     for (const Effect& effect : model.effects) {
       try {
-        require_of_drive(effect, model.robot);
+        effects::require_of_drive(effect, model.robot);
       } catch (const std::invalid_argument& error) {
         throw TomlFault{static_cast<std::size_t>(effect.line), error.what()};
       }
@@ -164,6 +170,10 @@ Model model_from_text(const std::string& text, const std::string& file) {
     throw InputError(file, 0, "no TOML: keys or values are malformed");
   }
 }
+
+}  // namespace trussmap::io
+
+namespace trussmap {
 
 Model read_model(const std::filesystem::path& file) {
   return model_from_text(read_file(file), file.string());

@@ -10,7 +10,7 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::io {
 
 /// Of a table that holds robot, noise and effect, or some of them. Throws InputError as read_model
 /// does; `file` is for messages.
@@ -19,4 +19,4 @@ namespace trussmap {
 /// Of a model file's text. Throws as model_of; `file` is for messages.
 [[nodiscard]] Model model_from_text(const std::string& text, const std::string& file);
 
-}  // namespace trussmap
+}  // namespace trussmap::io

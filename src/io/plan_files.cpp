@@ -20,6 +20,8 @@
 #include <nlohmann/json.hpp>
 
 namespace trussmap {
+using namespace io;
+
 namespace {
 
 using nlohmann::json;
@@ -39,12 +41,12 @@ Waypoint read_waypoint(const CsvReader& table, const std::vector<int>& loads) {
   one.landmark = table.field(table.require("landmark"));
   if (one.landmark.empty()) table.fail("landmark is empty, expected the name of one");
   one.place = {number("x", kFarthest), number("y", kFarthest)};
-  one.heading = number("heading", kMostTurn);
+  one.heading = number("heading", recording::kMostTurn);
   one.speed = number("speed", kFastest);
-  one.bend = number("bend", kMostTurn);
-  one.turn = number("turn", kMostTurn);
+  one.bend = number("bend", recording::kMostTurn);
+  one.turn = number("turn", recording::kMostTurn);
   one.turn_rate = number("turn_rate", kFastest);
-  one.stop = number("stop_s", kLongestStop);
+  one.stop = number("stop_s", recording::kLongestStop);
   for (const int column : loads) one.loads.push_back(table.number(column, kLargestLoad));
   return one;
 }
@@ -67,7 +69,7 @@ void require_drivable(const CsvReader& table, const Waypoint& one, const Waypoin
     table.fail(fmt::format("turn_rate is {:g} rad/s, expected above 0 where turn is not 0",
                            one.turn_rate));
   }
-  if (std::abs(one.bend) > kSharpestBend) {
+  if (std::abs(one.bend) > recording::kSharpestBend) {
     table.fail(fmt::format("bend is {:g}, expected -1 to 1 rad (are these degrees?)", one.bend));
   }
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace io;
 
 std::string format_poses(const std::vector<TimedPose>& poses) {
   std::string text = "t,x,y,heading,c_xx,c_xy,c_xh,c_yy,c_yh,c_hh\n";

@@ -18,6 +18,8 @@
 #include <lzma.h>
 
 namespace trussmap {
+using namespace io;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -71,6 +73,10 @@ std::string decompressed(const std::string& bytes, const fs::path& path) {
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::io {
+
 std::size_t most_grown(const Growth& growth, std::size_t size) {
   if (const std::size_t set = most_bytes; set > 0) return set;
   return std::max(growth.mebibytes * kMebibyte, growth.times * size);
@@ -94,6 +100,10 @@ std::string more_than(const Growth& growth) {
          std::to_string(growth.times) + " times their size" + kRemedy;
 }
 
+}  // namespace trussmap::io
+
+namespace trussmap {
+
 void set_read_limits(const ReadLimits& limits) {
   constexpr int kDeepest = 10000;  // elements end one within the other, on the stack
   if (limits.nesting < 1 || limits.nesting > kDeepest) {
@@ -109,9 +119,9 @@ ReadLimits read_limits() {
 }
 
 std::string read_file(const fs::path& path) try {
-  require_file(path);
+  files::require_file(path);
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw unreadable(path.string());
+  if (!stream) throw files::unreadable(path.string());
   const std::size_t most = most_read(path);
   std::string bytes;
   std::array<char, 1U << 16U> buffer{};

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::io {
 
 inline constexpr std::size_t kMebibyte = std::size_t{1} << 20U;  // bytes
 
@@ -33,4 +33,4 @@ struct Growth {
 /// "more than 64 MiB and 200 times their size; allow more with --max-input-mib".
 [[nodiscard]] std::string more_than(const Growth& growth);
 
-}  // namespace trussmap
+}  // namespace trussmap::io

@@ -25,6 +25,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace io;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,7 +37,7 @@ constexpr std::string_view kTaken[] = {"left", "right", "sin", "cos", "tan", "ab
                                        "sign", "min",   "max", "exp", "log", "sqrt"};
 
 bool is_reserved(std::string_view name) {
-  const std::vector<std::string>& variables = reserved_variables();
+  const std::vector<std::string>& variables = recording::reserved_variables();
   return std::find(variables.begin(), variables.end(), name) != variables.end() ||
          std::find(std::begin(kTaken), std::end(kTaken), name) != std::end(kTaken);
 }
@@ -47,7 +49,7 @@ double time_in(const CsvReader& csv, int column) {
   const double t = csv.number(column);
   if (std::abs(t) <= kLargestTime) return t;
   std::string looks;
-  for (const TimeUnit& one : kTimeUnits) {
+  for (const recording::TimeUnit& one : recording::kTimeUnits) {
     const double seconds = t / one.per_second;
     if (seconds > kFirst && seconds < kLast) {
       looks = fmt::format(": it looks like {} since 1970, not seconds", one.name);
@@ -81,7 +83,7 @@ void refuse_other_columns(const CsvReader& csv, const std::vector<std::string_vi
 std::string landmark_name(const CsvReader& csv, int column) {
   const std::string_view name = csv.field(column);
   if (name.empty()) csv.fail("column landmark is empty, expected a landmark's name");
-  if (!is_plain_text(name)) {
+  if (!text::is_plain_text(name)) {
     csv.fail("a landmark's name holds a control character, expected printable text in UTF-8");
   }
   return std::string(name);
@@ -147,11 +149,11 @@ Drive drive_in(std::string_view text, const std::string& file) {
 }
 
 void require_inside(const CsvReader& csv, const Drive& drive, double t, const char* what) {
-  const double slack = clock_slack(drive);
+  const double slack = drive::clock_slack(drive);
   if (t >= drive.start() - slack && t <= drive.t.back() + slack) return;
   constexpr double kFarOut = 10.0;  // times the drive's length
   std::string looks;
-  for (const TimeUnit& one : kTimeUnits) {
+  for (const recording::TimeUnit& one : recording::kTimeUnits) {
     const double seconds = t / one.per_second;
     const bool inside = seconds >= drive.start() && seconds <= drive.t.back();
     if (looks.empty() && inside &&
@@ -362,22 +364,34 @@ bool is_covariate_name(std::string_view name) {
   return is_name(name) && !is_reserved(name);
 }
 
+}  // namespace trussmap
+
+namespace trussmap::io {
+
 std::vector<SurveyPoint> read_survey(const fs::path& file) {
   return survey_in(read_file(file), file.string());
 }
 
+}  // namespace trussmap::io
+
+namespace trussmap {
+
 Recording read_recording(const fs::path& folder, bool drive_alone) {
   std::error_code ignored;
-  if (!is_present(folder)) {
+  if (!files::is_present(folder)) {
     throw InputError(folder.string(), 0, "there is no such folder, expected a recording");
   }
   if (!fs::is_directory(folder, ignored)) {
     throw InputError(folder.string(), 0, "is a file, expected a recording's folder");
   }
-  const Streams streams{[&](const char* name) { return is_present(folder / name); },
+  const Streams streams{[&](const char* name) { return files::is_present(folder / name); },
                         [&](const char* name) { return read_file(folder / name); }};
   return recording_of(folder, streams, drive_alone);
 }
+
+}  // namespace trussmap
+
+namespace trussmap::io {
 
 Recording recording_in(const NamedTexts& files, bool drive_alone) {
   const auto find = [&](const char* name) {
@@ -389,4 +403,4 @@ Recording recording_in(const NamedTexts& files, bool drive_alone) {
   return recording_of("", streams, drive_alone);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::io

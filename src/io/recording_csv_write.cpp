@@ -12,6 +12,8 @@
 #include <string>
 
 namespace trussmap {
+using namespace io;
+
 namespace {
 
 namespace fs = std::filesystem;

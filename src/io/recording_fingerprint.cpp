@@ -17,14 +17,14 @@ class Hash {
     hash_.take(std::string_view("\0", 1));  // so that texts do not run together
   }
   void take(const std::vector<double>& numbers) {
-    for (const double number : numbers) take(shortest_text(number));
+    for (const double number : numbers) take(text::shortest_text(number));
     take("");
   }
 
   [[nodiscard]] std::string digits() const { return hash_.digits(); }
 
  private:
-  FnvHash hash_;
+  text::FnvHash hash_;
 };
 
 void take(const Observations& recording, Hash& hash) {

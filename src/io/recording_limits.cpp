@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::io {
 namespace {
 
 /// Absent, or one that can be.
@@ -20,9 +20,10 @@ bool is_wrong_sd(double sd) {
 
 void SourceLine::expect(const char* what, double value, double largest) const {
   if (std::abs(value) <= largest) return;
-  throw InputError(file_, line_,
-                   joined(what, " is ", std::isnan(value) ? "no number" : shortest_text(value),
-                          ", expected a number of at most ", csv_number(largest), " in size"));
+  throw InputError(
+      file_, line_,
+      text::joined(what, " is ", std::isnan(value) ? "no number" : text::shortest_text(value),
+                   ", expected a number of at most ", csv_number(largest), " in size"));
 }
 
 void SourceLine::expect_last_row(const Drive& drive) const {
@@ -30,8 +31,8 @@ void SourceLine::expect_last_row(const Drive& drive) const {
   expect("time", drive.t[row], kLargestTime);
   if (row > 0 && !(drive.t[row] > drive.t[row - 1])) {
     throw InputError(file_, line_,
-                     joined("time ", csv_number(drive.t[row]), " follows on ",
-                            csv_number(drive.t[row - 1]), ", expected a later time"));
+                     text::joined("time ", csv_number(drive.t[row]), " follows on ",
+                                  csv_number(drive.t[row - 1]), ", expected a later time"));
   }
   if (!drive.left.empty()) expect("the left wheel's travel", drive.left[row], kLargestTravel);
   if (!drive.right.empty()) expect("the right wheel's travel", drive.right[row], kLargestTravel);
@@ -76,4 +77,4 @@ void SourceLine::expect(const Loop& loop) const {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::io

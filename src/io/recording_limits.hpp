@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::io {
 
 inline constexpr double kLargestTime = 1e12;       // s: Unix time in nanoseconds is more
 inline constexpr double kLargestTravel = 1e6;      // m in a row
@@ -42,4 +42,4 @@ class SourceLine {
   std::size_t line_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::io

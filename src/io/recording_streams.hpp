@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::io {
 
 /// landmark,x,y[,sd][,heading]. Throws InputError with file and line.
 [[nodiscard]] std::vector<SurveyPoint> read_survey(const std::filesystem::path& file);
@@ -17,4 +17,4 @@ namespace trussmap {
 /// Of streams that are texts still. Throws InputError as read_recording() does.
 [[nodiscard]] Recording recording_in(const NamedTexts& files, bool drive_alone);
 
-}  // namespace trussmap
+}  // namespace trussmap::io

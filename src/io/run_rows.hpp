@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::io {
 
 /// Throws InputError on an error longer than the whole path (m).
 void require_shorter(const CsvReader& table, const std::string& name, double value, double longest);
@@ -25,4 +25,4 @@ void require_both_ways(const SquareRuns& runs, const std::filesystem::path& file
 /// Throws InputError on fewer than two runs, and where all are equal.
 void require_scatter(const EndErrors& errors, const std::filesystem::path& file);
 
-}  // namespace trussmap
+}  // namespace trussmap::io

@@ -14,6 +14,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace io;
+
 namespace {
 
 double coordinate(const CsvReader& table, int column, const char* name, double longest) {
@@ -47,6 +49,10 @@ void refuse_wall_distances(const std::filesystem::path& file, const CsvReader& t
 }
 
 }  // namespace
+
+}  // namespace trussmap
+
+namespace trussmap::io {
 
 void require_shorter(const CsvReader& table, const std::string& name, double value,
                      double longest) {
@@ -83,6 +89,10 @@ void require_scatter(const EndErrors& errors, const std::filesystem::path& file)
   }
   if (errors.size() < 2) throw InputError(file.string(), 0, runs_text(errors.size(), ""));
 }
+
+}  // namespace trussmap::io
+
+namespace trussmap {
 
 SquareRuns read_square_runs(const std::filesystem::path& file, double longest) {
   const std::string text = read_file(file);

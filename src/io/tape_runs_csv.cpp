@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace io;
+
 namespace {
 
 /// A column that need not be there.
@@ -104,7 +106,7 @@ void check_straight(const CsvReader& table, const TapedRun& run) {
   }
   require_metres(table, "expected", run.expected);
   require_metres(table, "odometry", run.odometry);
-  if (std::abs(run.heading) > kQuarterTurn) {
+  if (std::abs(run.heading) > geometry::kQuarterTurn) {
     table.fail(
         fmt::format("heading is {:.3g} rad after a straight run, expected less than a "
                     "quarter turn (are these degrees? --degrees says so)",
@@ -122,7 +124,7 @@ bool looks_like_degrees(double turn) {
   constexpr double kMostTurns = 100.0;
   constexpr double kRound = 45.0;
   const double size = std::abs(turn);
-  return size > kMostTurns * kFullTurn ||
+  return size > kMostTurns * geometry::kFullTurn ||
          (size >= 2.0 * kRound && std::abs(std::remainder(size, kRound)) < 1e-9);
 }
 
@@ -135,7 +137,7 @@ void check_turn(const CsvReader& table, const TapedRun& run, bool degrees) {
     table.fail(fmt::format(
         "expected is {:g} rad, {:.0f} full turns, expected radians (are these degrees? --degrees "
         "says so)",
-        run.expected, std::abs(run.expected) / kFullTurn));
+        run.expected, std::abs(run.expected) / geometry::kFullTurn));
   }
   for (const auto& [name, value] :
        {std::pair("odometry", run.odometry), std::pair("gyro", run.gyro)}) {
@@ -147,7 +149,7 @@ void check_turn(const CsvReader& table, const TapedRun& run, bool degrees) {
                       name));
     }
     if (std::isnan(factor) || (factor < kFarOff && factor > 1.0 / kFarOff)) continue;
-    const double size = degrees ? kDegrees : 1.0;
+    const double size = degrees ? geometry::kDegrees : 1.0;
     table.fail(
         fmt::format("expected is {:g} and {} {:g}, expected {} for both (is one in turns, "
                     "or in {}?)",
@@ -185,7 +187,7 @@ double number_or_zero(const CsvReader& table, int column) {
 }
 
 TapedRun read_run(const CsvReader& table, const TapeColumns& columns, bool degrees) {
-  const double angle = degrees ? kDegree : 1.0;
+  const double angle = degrees ? geometry::kDegree : 1.0;
   TapedRun run;
   run.line = table.line();
   run.kind = kind_of(table, columns.kind);

@@ -9,16 +9,16 @@
 
 #include <cstdint>  // which toml++ takes to be there
 
-namespace trussmap {
+namespace trussmap::io {
 struct TomlAssertion {};
-}  // namespace trussmap
+}  // namespace trussmap::io
 
 #undef NDEBUG
 #undef TOML_HEADER_ONLY
 #undef TOML_SHARED_LIB
 #define TOML_HEADER_ONLY 1
 #define TOML_ASSERT(condition) \
-  (static_cast<bool>(condition) ? static_cast<void>(0) : throw ::trussmap::TomlAssertion())
+  (static_cast<bool>(condition) ? static_cast<void>(0) : throw ::trussmap::io::TomlAssertion())
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wterminate"  // of what no file reaches
 // Its tables of blanks beyond ASCII end in the unreachable, and letters reach it.

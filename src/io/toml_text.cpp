@@ -6,7 +6,7 @@
 
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::io {
 
 std::string valid_utf8(std::string text) {
   std::size_t from = 0;
@@ -37,4 +37,4 @@ std::string toml_string(const std::string& text) {
   return result + '"';
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::io

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::io {
 
 /// The text with ? in place of bytes that are no UTF-8, which TOML has not.
 [[nodiscard]] std::string valid_utf8(std::string text);
@@ -12,4 +12,4 @@ namespace trussmap {
 /// A TOML basic string, with its quotes; of valid_utf8.
 [[nodiscard]] std::string toml_string(const std::string& text);
 
-}  // namespace trussmap
+}  // namespace trussmap::io

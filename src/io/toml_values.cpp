@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::io {
 
 void refuse(const toml::source_region& where, const std::string& what) {
   throw TomlFault{where.begin.line, what};
@@ -91,4 +91,4 @@ std::string toml_number(double value) {
   return csv_number(value == 0.0 ? 0.0 : value);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::io

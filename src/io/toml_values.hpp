@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::io {
 
 /// What is wrong and where, for an InputError, which knows the file as well.
 struct TomlFault {
@@ -47,4 +47,4 @@ template <typename Read>
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::io

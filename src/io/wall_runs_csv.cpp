@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace io;
+
 namespace {
 
 Faces faces_of(const CsvReader& table, int column) {

@@ -113,8 +113,8 @@ WorkbenchStep step_of(const ordered_json& json, std::size_t number, std::size_t 
     step.excluded = excluded_of(json.at("excluded"), recordings, file);
     step.excluded_legs = json.at("excluded_legs").get<std::size_t>();
   }
-  step.model = model_from_text(json.at("model").get<std::string>(),
-                               fmt::format("{}, model of step {}", file, number));
+  step.model = io::model_from_text(json.at("model").get<std::string>(),
+                                   fmt::format("{}, model of step {}", file, number));
   return step;
 }
 

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <type_traits>
 
-namespace trussmap {
+namespace trussmap::io {
 namespace {
 
 // What a document may grow to by what it declares as defaults.
@@ -135,4 +135,4 @@ XmlElement parse_xml(const std::string& document, const std::string& file) {
   return std::move(tree.document.children.front());
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::io

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::io {
 
 struct XmlElement {
   std::string name;
@@ -27,4 +27,4 @@ struct XmlElement {
 /// deeper than any map is.
 [[nodiscard]] XmlElement parse_xml(const std::string& document, const std::string& file);
 
-}  // namespace trussmap
+}  // namespace trussmap::io

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 void BandMatrix::resize(int n, int band) {
   n_ = n;
@@ -60,4 +60,4 @@ void BandMatrix::solve_in_place(Eigen::VectorXd& x) const {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

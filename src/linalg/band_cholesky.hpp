@@ -11,7 +11,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 class BandMatrix {
  public:
@@ -44,4 +44,4 @@ class BandMatrix {
   std::vector<char> held_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 Elimination plan_elimination(int nodes, const std::vector<NodePair>& pairs) {
   if (nodes == 0) return {};
@@ -215,4 +215,4 @@ void BlockSystem::set_diagonal(const Eigen::VectorXd& values) {
   for (int k = 0; k < unknowns_; ++k) matrix_.valuePtr()[diagonal_[idx(k)]] = values[k];
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

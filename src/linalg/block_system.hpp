@@ -21,7 +21,7 @@
 #include <array>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 /// All nodes, held ones too, in an order with little fill, and what it costs.
 struct Elimination {
@@ -145,4 +145,4 @@ void BlockSystem::add_coupling(int pair, const Eigen::Matrix<double, Rows, Colum
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

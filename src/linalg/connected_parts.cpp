@@ -9,7 +9,7 @@
 #include <boost/pending/disjoint_sets.hpp>
 #include <boost/property_map/property_map.hpp>
 
-namespace trussmap {
+namespace trussmap::linalg {
 namespace {
 
 /// Of two sets the one of higher rank names both: here the one that begins lower. Ranks are never
@@ -51,4 +51,4 @@ std::vector<int> connected_parts(int nodes, const std::vector<NodePair>& pairs) 
   return part;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

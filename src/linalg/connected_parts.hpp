@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 /// Sets of the nodes 0, 1, ..., each named by its lowest node; at first every node is alone.
 class DisjointSets {
@@ -28,4 +28,4 @@ class DisjointSets {
 /// in any order, any number of times.
 [[nodiscard]] std::vector<int> connected_parts(int nodes, const std::vector<NodePair>& pairs);
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

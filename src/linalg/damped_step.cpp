@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "linalg/damped_step.hpp"
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 void factorise_damped(BlockSystem& A, double damping, double least) {
   if (A.unknowns() == 0) return;
@@ -35,4 +35,4 @@ bool is_rounding(const Eigen::VectorXd& step, double size) {
   return step.size() == 0 || step.cwiseAbs().maxCoeff() <= kRounding * size;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

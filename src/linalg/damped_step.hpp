@@ -6,7 +6,7 @@
 
 #include "linalg/block_system.hpp"
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 /// Factorises A + damping D; A stays as it is. An entry of D counts as at least `least` of its
 /// largest: what has no stiffness at all cannot be damped by a share of it. Throws
@@ -23,4 +23,4 @@ inline constexpr double kRounding = 1e-15;  ///< relative: a few units in the la
 /// Whether a step is nothing but rounding of unknowns of that size.
 [[nodiscard]] bool is_rounding(const Eigen::VectorXd& step, double size);
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -7,7 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 SymmetricModes symmetric_modes(const Eigen::MatrixXd& A) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(A);
@@ -89,4 +89,4 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b
   return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(A).solve(b);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -11,7 +11,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 /// A = V diag(l) V' of a symmetric matrix, of which the lower triangle is read; l ascends.
 struct SymmetricModes {
@@ -74,4 +74,4 @@ void append_columns(Eigen::MatrixXd& matrix, const Eigen::MatrixXd& more);
 /// The shortest x of those that bring A x nearest to b.
 [[nodiscard]] Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::linalg {
 namespace {
 
 constexpr std::ptrdiff_t kSmallest = 6;  // nodes: smaller parts are one dense front anyway
@@ -124,4 +124,4 @@ std::vector<int> dissection_order(const std::vector<Vector2>& positions,
   return Dissector(positions, pairs).run();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -20,11 +20,11 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 /// An order of elimination of all nodes. `positions`: one per node, m. Throws
 /// std::invalid_argument on a pair out of range.
 [[nodiscard]] std::vector<int> dissection_order(const std::vector<Vector2>& positions,
                                                 const std::vector<NodePair>& pairs);
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

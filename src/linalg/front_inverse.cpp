@@ -15,7 +15,7 @@ void dgemm_(const char* transa, const char* transb, const int* m, const int* n, 
             const double* beta, double* c, const int* ldc);
 }
 
-namespace trussmap {
+namespace trussmap::linalg {
 namespace {
 
 constexpr int kInverseBlock = 16;     // columns whose triangle is inverted, by trial
@@ -157,4 +157,4 @@ void invert_front(double* panel, int rows, int width, double* inverse, double* s
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -23,7 +23,7 @@ void dgemm_(const char* transa, const char* transb, const int* m, const int* n, 
             const double* beta, double* c, const int* ldc);
 }
 
-namespace trussmap {
+namespace trussmap::linalg {
 namespace {
 
 constexpr int kTile = 256;
@@ -87,11 +87,11 @@ int eliminate_large(double* panel, int rows, int width, double* update) {
     const std::size_t tiles = edges.size() - 1;
     const auto first = [&](std::size_t tile) { return panel + at(edges[tile], j, rows); };
     const auto length = [&](std::size_t tile) { return edges[tile + 1] - edges[tile]; };
-    parallel_for(tiles, [&](std::size_t tile) {
+    parallel::parallel_for(tiles, [&](std::size_t tile) {
       const int m = length(tile);
       dtrsm_("R", "L", "T", "N", &m, &n, &one, square, &rows, first(tile), &rows);
     });
-    parallel_for(tiles * (tiles + 1) / 2, [&](std::size_t pair) {
+    parallel::parallel_for(tiles * (tiles + 1) / 2, [&](std::size_t pair) {
       std::size_t row = 0;  // the pair's tiles, column <= row
       while ((row + 1) * (row + 2) / 2 <= pair) ++row;
       const std::size_t column = pair - row * (row + 1) / 2;
@@ -203,4 +203,4 @@ void solve_backward_many(const double* panel, int rows, int width, double* x, in
   dtrsm_("R", "L", "N", "N", &count, &width, &one, panel, &rows, x, &count);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

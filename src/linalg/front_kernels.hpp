@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 /// Place of an entry in a matrix by columns.
 inline std::ptrdiff_t at(int row, int column, int leading) {
@@ -38,4 +38,4 @@ void solve_backward_many(const double* panel, int rows, int width, double* x, in
 /// right; the rest of it is found from the panel (L, which is spoilt). `space`: rows x width.
 void invert_front(double* panel, int rows, int width, double* inverse, double* space);
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -18,7 +18,7 @@
 #endif
 #define TRUSSMAP_INLINE __attribute__((always_inline)) inline
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 inline constexpr int kBlock = 4;  // columns at a time
 
@@ -121,4 +121,4 @@ TRUSSMAP_INLINE double dot(const double* a, const double* b, int m) {
   return sum;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::linalg {
 namespace {
 
 /// Children in ascending order, by first child and next sibling.
@@ -287,4 +287,4 @@ FrontTree plan_fronts(const BlockPattern& pattern, const std::vector<int>& sizes
   return Planner(pattern, sizes).plan();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -20,7 +20,7 @@
 #include <array>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 using NodePair = std::array<int, 2>;
 
@@ -57,4 +57,4 @@ struct FrontTree {
 /// `sizes`: unknowns per place, each positive.
 [[nodiscard]] FrontTree plan_fronts(const BlockPattern& pattern, const std::vector<int>& sizes);
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -13,7 +13,7 @@
 #include <map>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::linalg {
 namespace {
 
 constexpr Eigen::Index kColumns = 32;  // solved at once: a front's rows stay in the cache
@@ -117,7 +117,7 @@ std::vector<FrontalCholesky::FrontRange> FrontalCholesky::independent_ranges() c
   for (const Part& front : parts_) {
     if (front.parent < 0) all += front.work;
   }
-  if (!is_parallel() || all < kWorthThreads) return {{0, parts_.size()}};
+  if (!parallel::is_parallel() || all < kWorthThreads) return {{0, parts_.size()}};
   const double most = all / kRangesPerThread / threads();
   std::vector<FrontRange> ranges;
   double work = 0.0;  // of the last range
@@ -141,7 +141,8 @@ void FrontalCholesky::factorise(const SparseMatrix& lower) {
   if (!panels_) panels_ = large_array(stored_);
   std::vector<Update> waiting(parts_.size());
   const std::vector<FrontRange> ranges = independent_ranges();
-  parallel_for(ranges.size(), [&](std::size_t k) { eliminate_range(ranges[k], lower, waiting); });
+  parallel::parallel_for(ranges.size(),
+                         [&](std::size_t k) { eliminate_range(ranges[k], lower, waiting); });
   // What is above them, one front after the other, its tiles at the same time.
   std::size_t next = 0;
   for (const FrontRange& range : ranges) {
@@ -236,7 +237,7 @@ void FrontalCholesky::solve_in_place(Eigen::Ref<Eigen::VectorXd> x) const {
 }
 
 void FrontalCholesky::solve_columns(Eigen::MatrixXd& x) const {
-  parallel_for(idx((x.cols() + kColumns - 1) / kColumns), [&](std::size_t k) {
+  parallel::parallel_for(idx((x.cols() + kColumns - 1) / kColumns), [&](std::size_t k) {
     const Eigen::Index first = static_cast<Eigen::Index>(k) * kColumns;
     solve_some(x.middleCols(first, std::min(kColumns, x.cols() - first)));
   });
@@ -361,4 +362,4 @@ double FrontalCholesky::least_pivot_share(const Eigen::VectorXd& diagonal) const
   return least;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

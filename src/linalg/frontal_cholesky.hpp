@@ -31,7 +31,7 @@
 #include <memory>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 class FrontalInverse;
 
@@ -141,4 +141,4 @@ class FrontalInverse {
   LargeArray entries_;  ///< the fronts' first columns, as L's are stored
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 template <typename Visit>
 void FrontalCholesky::descend(const Visit& visit) const {
@@ -113,4 +113,4 @@ Eigen::MatrixXd FrontalInverse::block(int row, int rows, int column, int columns
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -9,7 +9,7 @@
 #include <sys/mman.h>
 #endif
 
-namespace trussmap {
+namespace trussmap::linalg {
 namespace {
 
 constexpr std::size_t kLargePage = std::size_t{1} << 21U;
@@ -33,4 +33,4 @@ LargeArray large_array(std::size_t count) {
   return LargeArray(static_cast<double*>(memory));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

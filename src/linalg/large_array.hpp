@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <memory>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 struct FreeLargeArray {
   void operator()(double* numbers) const { std::free(numbers); }
@@ -19,4 +19,4 @@ using LargeArray = std::unique_ptr<double[], FreeLargeArray>;
 /// As many numbers, not initialised. Throws std::bad_alloc.
 [[nodiscard]] LargeArray large_array(std::size_t count);
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

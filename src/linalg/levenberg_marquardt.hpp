@@ -32,7 +32,7 @@
 #include <concepts>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 template <typename Problem>
 concept LeastSquaresProblem = requires(Problem& problem, const typename Problem::State& state,
@@ -157,4 +157,4 @@ DescentResult<typename Problem::State> levenberg_marquardt(Problem& problem,
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace trussmap {
+namespace trussmap::linalg {
 namespace {
 
 constexpr double kSafeCondition = 1e-13;  // no doubt above
@@ -71,4 +71,4 @@ std::vector<int> find_loose_nodes(BlockSystem& A,
   return loose;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

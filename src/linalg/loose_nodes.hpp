@@ -15,7 +15,7 @@
 #include <functional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 struct LooseLimits {
   double strain = 0.0;     ///< energy of a mode with v'Dv = 1 that only rounding strains
@@ -29,4 +29,4 @@ struct LooseLimits {
     BlockSystem& A, const std::function<double(const Eigen::VectorXd&)>& strain,
     const LooseLimits& limits);
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -8,7 +8,7 @@
 
 #include <Eigen/SparseCholesky>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 SelectedInverse::SelectedInverse(const SparseMatrix& lower) {
   using Factor = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::NaturalOrdering<int>>;
@@ -70,4 +70,4 @@ Eigen::MatrixXd SelectedInverse::block(int row, int rows, int column, int column
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

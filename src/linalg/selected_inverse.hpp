@@ -16,7 +16,7 @@
 
 #include "linalg/sparse_cholesky.hpp"
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 class SelectedInverse {
  public:
@@ -33,4 +33,4 @@ class SelectedInverse {
   Eigen::VectorXd diagonal_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

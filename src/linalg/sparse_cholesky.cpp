@@ -14,7 +14,7 @@
 
 #include <cholmod.h>
 
-namespace trussmap {
+namespace trussmap::linalg {
 namespace {
 
 // CHOLMOD's view of an Eigen matrix; it only reads through the pointers.
@@ -296,4 +296,4 @@ double SparseCholesky::factor_nonzeros() const {
   return cholmod_->changed ? cholmod_->changed->nonzeros() : cholmod_->common.lnz;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -18,7 +18,7 @@
 
 #include <Eigen/SparseCore>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 /// Column-major, int indices: CHOLMOD's own layout.
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
@@ -106,4 +106,4 @@ class SparseCholesky {
   std::unique_ptr<Cholmod> cholmod_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

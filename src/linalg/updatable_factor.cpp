@@ -12,7 +12,7 @@
 #include <queue>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::linalg {
 namespace {
 
 constexpr int kSpareRows = 4;  // of a column that grows
@@ -339,4 +339,4 @@ void UpdatableFactor::solve_in_place(Eigen::VectorXd& x) const {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

@@ -18,7 +18,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::linalg {
 
 /// One entry of a sparse column.
 struct FactorEntry {
@@ -88,4 +88,4 @@ class UpdatableFactor {
   std::vector<char> marked_;           ///< likewise
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::linalg

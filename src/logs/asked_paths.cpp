@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 std::optional<FieldRef> AskedPaths::find(const std::string& path, std::size_t line,
                                          const LogTopic& topic, FieldRef from) {
@@ -61,4 +61,4 @@ std::string listed_fields(FieldRef message) {
   return text;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

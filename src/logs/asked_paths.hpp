@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 class AskedPaths {
  public:
@@ -44,4 +44,4 @@ class AskedPaths {
 /// Paths of the fields of a message, those of its first ones, with commas between.
 [[nodiscard]] std::string listed_fields(FieldRef message);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

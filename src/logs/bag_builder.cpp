@@ -11,7 +11,7 @@
 #include <limits>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 // Seconds of a ROS time are an int32.
@@ -108,4 +108,4 @@ Bag BagBuilder::finish() {
   return std::move(bag_);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

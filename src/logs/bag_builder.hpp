@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// The name with what no topic of ROS 2 may have replaced: letters, digits and single underscores,
 /// no digit first. "tag36h11:5" becomes tag36h11_5, "5" landmark_5.
@@ -52,4 +52,4 @@ class BagBuilder {
   Bag bag_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

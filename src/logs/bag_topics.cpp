@@ -7,7 +7,7 @@
 
 #include <limits>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr std::uint64_t kLatest = std::numeric_limits<std::int64_t>::max();
@@ -109,4 +109,4 @@ const std::string& BagTopics::name(std::size_t channel) const {
   return topics_[channels_[channel].topic].name;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

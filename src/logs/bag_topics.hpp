@@ -21,7 +21,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// As a file describes it.
 struct BagChannel {
@@ -78,4 +78,4 @@ class BagTopics {
   Decompressor decompressor_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -15,7 +15,7 @@
 #include <string>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// What a file says of itself, as it can stand in a line of ours: without control characters, and
 /// not endless.
@@ -86,4 +86,4 @@ class ByteReader {
   std::size_t at_ = 0;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <regex>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 std::optional<std::int64_t> calendar_time(const std::string& text) {
   static const std::regex kTime(
@@ -83,4 +83,4 @@ std::optional<std::int64_t> decimal_time(std::string_view text, std::int64_t uni
   return negative ? -t : t;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 inline constexpr std::int64_t kNanosecondsPerSecond = 1000000000;
 
@@ -20,4 +20,4 @@ inline constexpr std::int64_t kNanosecondsPerSecond = 1000000000;
 /// 4e18 ns.
 [[nodiscard]] std::optional<std::int64_t> decimal_time(std::string_view text, std::int64_t unit);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

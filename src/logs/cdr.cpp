@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr std::size_t kEncapsulation = 4;  // bytes
@@ -323,4 +323,4 @@ void decode_ros1(std::string_view message, const Ros2Layout& layout, std::size_t
   Decoder(message, {false, 2, true}, layout, elements, tree).decode();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -33,7 +33,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// What is wrong with a message: "needs 8 bytes for pose, 3 are left".
 class CdrError : public std::runtime_error {
@@ -55,4 +55,4 @@ void decode_cdr(std::string_view message, const Ros2Layout& layout, std::size_t 
 void decode_ros1(std::string_view message, const Ros2Layout& layout, std::size_t elements,
                  FieldTree& tree);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -20,7 +20,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 class CdrWriter {
  public:
@@ -54,4 +54,4 @@ class CdrWriter {
   std::string bytes_ = std::string("\0\1\0\0", kEncapsulation);
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

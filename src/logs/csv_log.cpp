@@ -19,7 +19,7 @@
 #include <functional>
 #include <limits>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -136,7 +136,7 @@ class Table {
   TableRecords records_;
   TableLayout layout_;
   CellReader cells_{'.'};
-  CsvRecord fields_;
+  io::CsvRecord fields_;
   FieldTree tree_;
   std::string cut_off_;
 };
@@ -160,4 +160,4 @@ LogEnd read_csv_log(const fs::path& file, const LogVisit& visit) {
   return Table(file, visit).read();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

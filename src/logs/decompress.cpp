@@ -19,7 +19,7 @@
 #include <zlib.h>
 #include <zstd.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,7 +29,7 @@ constexpr std::uint64_t kUsualGrowth = 16;                 // times the compress
 constexpr std::string_view kZstdMagic("\x28\xB5\x2F\xFD", 4);
 
 // Recordings of cameras in the dark shrink to a hundredth.
-constexpr Growth kOfBag{1024, 200};
+constexpr io::Growth kOfBag{1024, 200};
 
 /// What one call of a library made of how much.
 struct Progress {
@@ -229,7 +229,7 @@ bool is_zstd(std::string_view bytes) {
 }
 
 struct DecompressedFile::Held {
-  Descriptor descriptor;  // locked: no leftover of a killed run
+  files::Descriptor descriptor;  // locked: no leftover of a killed run
 };
 
 namespace {
@@ -237,13 +237,13 @@ namespace {
 /// Writes what `file` decompresses to; whether it is whole.
 bool decompress_to(const fs::path& file, int descriptor) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw unreadable(file.string());
+  if (!in) throw files::unreadable(file.string());
   const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),
                                                                         &ZSTD_freeDCtx);
   if (context == nullptr) throw std::bad_alloc();
   std::error_code ignored;
   const std::uintmax_t size = fs::file_size(file, ignored);
-  const std::size_t most = most_grown(kOfBag, ignored ? 0 : static_cast<std::size_t>(size));
+  const std::size_t most = io::most_grown(kOfBag, ignored ? 0 : static_cast<std::size_t>(size));
   std::string from(ZSTD_DStreamInSize(), '\0');
   std::string to(ZSTD_DStreamOutSize(), '\0');
   std::uint64_t before = 0;
@@ -263,9 +263,9 @@ bool decompress_to(const fs::path& file, int descriptor) {
       full = made.pos == made.size && !at_end;
       written += made.pos;
       if (written > most) {
-        throw InputError(file.string(), 0, "the zstd data grow to " + more_than(kOfBag));
+        throw InputError(file.string(), 0, "the zstd data grow to " + io::more_than(kOfBag));
       }
-      if (!write_all(descriptor, std::string_view(to).substr(0, made.pos), false)) {
+      if (!files::write_all(descriptor, std::string_view(to).substr(0, made.pos), false)) {
         throw InputError(file.string(), 0,
                          "cannot be decompressed into the folder of temporary files (" +
                              std::system_category().message(errno) + ")");
@@ -281,11 +281,11 @@ bool decompress_to(const fs::path& file, int descriptor) {
 
 DecompressedFile::DecompressedFile(const fs::path& file) : held_(std::make_unique<Held>()) {
   const fs::path folder = fs::temp_directory_path();
-  remove_leftovers(folder);
+  files::remove_leftovers(folder);
   constexpr int kTries = 10;
   for (int k = 0; k < kTries && !held_->descriptor.valid(); ++k) {
-    path_ = temporary_for(folder / file.stem());
-    held_->descriptor = make_temporary_file(path_);
+    path_ = files::temporary_for(folder / file.stem());
+    held_->descriptor = files::make_temporary_file(path_);
   }
   if (!held_->descriptor.valid()) {
     throw InputError(file.string(), 0,
@@ -310,4 +310,4 @@ void DecompressedFile::remove() noexcept {
   if (!path_.empty()) fs::remove(path_, ignored);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

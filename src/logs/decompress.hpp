@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// What is wrong with compressed bytes: "the lz4 data are damaged (...)".
 class DecompressError : public std::runtime_error {
@@ -69,4 +69,4 @@ class DecompressedFile {
   std::string cut_off_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

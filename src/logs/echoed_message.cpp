@@ -9,7 +9,7 @@
 #include <cmath>
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
@@ -151,4 +151,4 @@ std::vector<std::string> echoed_columns(const Rows& rows) {
   return same ? names_of(joints) : std::vector<std::string>();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

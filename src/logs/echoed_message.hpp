@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// Names of the columns by the fields of the standard message that all rows are like: as many
 /// fields, numbers and texts where it has them, nanoseconds below 1e9, quaternions of length 1 or
@@ -20,4 +20,4 @@ namespace trussmap {
 [[nodiscard]] std::vector<std::string> echoed_columns(
     const std::vector<std::vector<std::string>>& rows);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

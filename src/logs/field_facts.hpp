@@ -8,11 +8,11 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// One that is not finite is none.
 void add_number(double value, LogFieldFacts& facts);
 /// `before`: the text that was added before, which this one becomes; an empty one is none.
 void add_text(const std::string& text, LogFieldFacts& facts, std::string& before);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 /// Lists of names that go with lists of values: JointState's.
@@ -180,4 +180,4 @@ std::vector<NamedField> leaves_of(FieldRef root, std::size_t elements) {
   return found;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -21,7 +21,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// Whether the path's topic is this one.
 [[nodiscard]] bool is_of_topic(std::string_view path, const LogTopic& topic);
@@ -60,4 +60,4 @@ struct NamedField {
 };
 [[nodiscard]] std::vector<NamedField> leaves_of(FieldRef root, std::size_t elements);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 const Field& FieldRef::field() const {
   return tree_->fields_[at_];
@@ -88,4 +88,4 @@ std::string_view FieldTree::keep(std::string text) {
   return kept_.emplace_back(std::move(text));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

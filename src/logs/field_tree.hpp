@@ -26,7 +26,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 enum class FieldKind : std::uint8_t { number, integer, text, group, list };
 
@@ -94,4 +94,4 @@ class FieldTree {
   std::deque<std::string> kept_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 16U;
@@ -17,14 +17,14 @@ constexpr std::size_t kBlock = std::size_t{1} << 16U;
 }  // namespace
 
 FileWindow::FileWindow(const std::filesystem::path& file) : name_(file.string()) {
-  require_file(file);
+  files::require_file(file);
   if (file.extension() == ".xz") {
     buffer_ = read_file(file);
     return;
   }
   stream_.open(file, std::ios::binary);
-  if (!stream_) throw unreadable(name_);
-  most_ = most_read(file);
+  if (!stream_) throw files::unreadable(name_);
+  most_ = io::most_read(file);
 }
 
 /// One more block into the buffer; false at the file's end.
@@ -39,7 +39,7 @@ bool FileWindow::fill() {
   stream_.read(buffer_.data() + before, static_cast<std::streamsize>(block));
   if (stream_.bad()) throw InputError(name_, 0, "cannot be read to its end");
   buffer_.resize(before + static_cast<std::size_t>(stream_.gcount()));
-  if (offset_ + buffer_.size() > most_) throw too_long(name_, most_);
+  if (offset_ + buffer_.size() > most_) throw io::too_long(name_, most_);
   return buffer_.size() > before;
 }
 
@@ -60,4 +60,4 @@ std::uint64_t FileWindow::skip(std::uint64_t count) {
   return count - left;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

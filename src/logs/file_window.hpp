@@ -20,7 +20,7 @@
 #include <string>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 class FileWindow {
  public:
@@ -45,4 +45,4 @@ class FileWindow {
   std::uint64_t most_ = std::numeric_limits<std::uint64_t>::max();  // bytes that are read
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

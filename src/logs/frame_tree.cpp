@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr std::size_t kDeepest = 100;  // links from a frame to its root
@@ -216,4 +216,4 @@ void FrameTree::prune() {
   prune_at_ = std::max<std::size_t>(200000, 2 * samples_);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

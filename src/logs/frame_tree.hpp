@@ -21,7 +21,7 @@
 
 #include <Eigen/Geometry>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct FrameSample {
   std::int64_t t = 0;                                     ///< ns
@@ -93,4 +93,4 @@ struct PlanarAxis {
 };
 [[nodiscard]] PlanarAxis planar_axis(const Eigen::Matrix3d& rotation, char axis);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 /// NavSatFix: whether it has a fix, how good, and how certain.
@@ -68,4 +68,4 @@ void feed_fixes(Gathering& g, const FixMap& fixes) {
   });
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

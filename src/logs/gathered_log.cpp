@@ -10,7 +10,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 /// REP 145: an Imu that does not read its orientation, or its angular velocity, says so by a -1 at
@@ -316,4 +316,4 @@ GatheredLog gather(const JoinedLogs& logs, const LogMap& map) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// An odometry's message, or a pose.
 struct TimedTwist {
@@ -91,4 +91,4 @@ struct FramePath {
 /// Frames may have dots in their names: of all ways to split, the one whose frames are known.
 [[nodiscard]] FramePath frame_path(const std::string& path, const FrameTree& frames);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 /// "marker_ids[3]" of "../marker_ids[#]": what goes with element 3 in another list of the message.
@@ -42,7 +42,7 @@ bool is_named(const std::string& name, const SightingMap& map, bool table, Gathe
     to.unnamed += name.empty() && !table ? 1U : 0U;
     return false;
   }
-  if (!is_plain_text(name)) {
+  if (!text::is_plain_text(name)) {
     ++to.unnamed;
     return false;
   }
@@ -130,4 +130,4 @@ void feed_sightings(Gathering& g, const SightingMap& one) {
               });
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -11,7 +11,7 @@
 #include <set>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct Gathering {
   const LogMap& map;
@@ -29,4 +29,4 @@ void feed_sightings(Gathering& g, const SightingMap& sightings);
 /// The transforms of this topic, and of its static ones, are of use.
 void want_frames(Gathering& g, const std::string& topic);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

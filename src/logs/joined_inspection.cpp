@@ -18,6 +18,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace logs;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,7 +110,7 @@ void find_time_unit(const InspectedLog& reference, InspectedLog& log) {
 
 bool is_survey(const fs::path& path) {
   try {
-    return !read_survey(path).empty();
+    return !io::read_survey(path).empty();
   } catch (const InputError&) {
     return false;
   }

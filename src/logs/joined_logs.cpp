@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,4 +169,4 @@ LogEnd JoinedLogs::read(const LogVisit& visit,
   return all;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

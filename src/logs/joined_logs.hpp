@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// Throws InputError.
 [[nodiscard]] GivenDefinitions given_definitions(const LogOptions& options);
@@ -52,4 +52,4 @@ class JoinedLogs {
   GivenDefinitions definitions_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -9,7 +9,7 @@
 #include <bit>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// An integer or floating-point number of any size.
 template <typename T>
@@ -19,4 +19,4 @@ void put_little(std::string& out, T value) {
   out.append(raw.data(), raw.size());
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

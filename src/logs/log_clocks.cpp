@@ -11,7 +11,7 @@
 #include <limits>
 #include <numeric>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr std::size_t kMostWindows = 4000;
@@ -238,4 +238,4 @@ std::optional<ClockOffset> clock_offset(const std::vector<LoggedMotion>& first,
   return std::nullopt;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -11,6 +11,8 @@
 #include <cmath>
 
 namespace trussmap {
+using namespace logs;
+
 namespace {
 
 constexpr std::size_t kElements = 4;  // of a list of numbers that are looked at
@@ -157,6 +159,10 @@ class Surveyor {
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::logs {
+
 void add_number(double value, LogFieldFacts& facts) {
   if (!std::isfinite(value)) return;
   if (facts.values == 0) {
@@ -207,9 +213,17 @@ LogSurvey survey_log(const std::filesystem::path& log, const GivenDefinitions& d
   return Surveyor().survey(log, definitions);
 }
 
+}  // namespace trussmap::logs
+
+namespace trussmap {
+
 LogInspection inspect_log(const std::filesystem::path& log, const LogOptions& options) {
   return inspect_logs({log}, options);
 }
+
+}  // namespace trussmap
+
+namespace trussmap::logs {
 
 LogInspection inspect_one_log(const std::filesystem::path& log,
                               const GivenDefinitions& definitions) {
@@ -230,4 +244,4 @@ LogInspection inspect_one_log(const std::filesystem::path& log,
           std::move(survey.passed_over)};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

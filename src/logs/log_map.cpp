@@ -18,7 +18,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -94,7 +94,7 @@ std::vector<SurveyPoint> survey_of(const toml::table& node, const std::string& f
   const std::string name = table.text("file");
   if (!name.empty()) {
     try {
-      survey = read_survey(fs::path(file).parent_path() / name);
+      survey = io::read_survey(fs::path(file).parent_path() / name);
     } catch (const InputError& error) {
       table.fail(*table.find("file"), error.what());
     }
@@ -216,7 +216,7 @@ LogMap map_of(toml::table root, const fs::path& path) {
       root.erase(key);
     }
   }
-  map.model = model_of(model, file);
+  map.model = io::model_of(model, file);
   if (toml::table* wheels = root["wheels"].as_table()) share_constants(*wheels, map.model.robot);
   for (const auto& [key, node] : root) read_part(std::string(key.str()), node, file, map);
   for (const auto& [name, signal] : map.covariates) {
@@ -268,10 +268,10 @@ LogMap parse_log_map(const std::string& text, const fs::path& file) {
     map.to_state = lines_to_state(text);
     return map;
   } catch (const toml::parse_error& error) {
-    throw InputError(file.string(), error.source().begin.line, toml_fault(error));
-  } catch (const TomlAssertion&) {
+    throw InputError(file.string(), error.source().begin.line, io::toml_fault(error));
+  } catch (const io::TomlAssertion&) {
     throw InputError(file.string(), 0, "no TOML: keys or values are malformed");
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -26,7 +26,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// What of a message is its time.
 struct TimeMap {
@@ -163,4 +163,4 @@ struct LogMap {
 /// Of a text, `file` being its name; it may do without wheels. Throws as read_log_map does.
 [[nodiscard]] LogMap parse_log_map(const std::string& text, const std::filesystem::path& file);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

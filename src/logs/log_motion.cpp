@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 double in_seconds(std::int64_t t) {
@@ -146,4 +146,4 @@ std::vector<LoggedMotion> motions_of(const JoinedLogs& log, const LogMap& map) {
   return found;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct LoggedMotion {
   std::string what;             ///< "wheels", "gyro", "heading", "odometry", "truth", "fixes"
@@ -51,4 +51,4 @@ struct ClockOffset {
 [[nodiscard]] std::optional<ClockOffset> clock_offset(const std::vector<LoggedMotion>& first,
                                                       const std::vector<LoggedMotion>& second);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -22,6 +22,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace logs;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -208,7 +210,8 @@ void compare_wheels(const LogMap& map, const GatheredLog& gathered,
   std::int64_t begin = odometry.bounds.front();
   for (std::size_t k = 0; k < odometry.left.size(); ++k) {
     const BodyMotion by_wheels = wheels.motion(before + k);
-    const BodyMotion said = body_motion({odometry.left[k], odometry.right[k]}, robot.wheelbase);
+    const BodyMotion said =
+        drive::body_motion({odometry.left[k], odometry.right[k]}, robot.wheelbase);
     a += {by_wheels.forward, 0.0, by_wheels.turn};
     b += {said.forward, 0.0, said.turn};
     if (odometry.bounds[k + 1] - begin < kWindow) continue;

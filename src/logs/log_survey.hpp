@@ -14,7 +14,7 @@
 
 #include <Eigen/Geometry>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct FrameFacts {
   std::string parent;
@@ -65,4 +65,4 @@ void put_in_order(LogSurvey& survey, const std::filesystem::path& table);
 /// "nav_msgs/Odometry" of "nav_msgs/msg/Odometry".
 [[nodiscard]] std::string short_type(std::string_view type);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

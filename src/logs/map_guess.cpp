@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 /// Fields of all topics by their whole paths.
@@ -100,7 +100,7 @@ std::string covariate_name(const std::string& path) {
   if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0) {
     name.insert(0, "c_");
   }
-  const std::vector<std::string>& reserved = reserved_variables();
+  const std::vector<std::string>& reserved = recording::reserved_variables();
   if (std::find(reserved.begin(), reserved.end(), name) != reserved.end()) name += "_logged";
   return name;
 }
@@ -174,10 +174,11 @@ std::string guessed_joined_map(const std::vector<LogSurvey>& surveys,
                                                : guess_of_bag(*bag, fields, clocks, body);
   MapText text;
   guess_head(guessed, names + " become", text);
-  const std::string line = "survey.file = " + toml_string(survey.empty() ? "survey.csv" : survey);
+  const std::string line =
+      "survey.file = " + io::toml_string(survey.empty() ? "survey.csv" : survey);
   const char* const why = "landmarks measured apart: landmark,x,y [m]";
   survey.empty() ? text.comment(line + "   # " + why) : text.line(line, why);
   return text.str() + "\n" + body.str();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// A field with its whole path.
 struct NamedFacts {
@@ -52,4 +52,4 @@ struct Guessed {
 /// Words of a name in small letters, in order: leftTicks_mm is left, ticks, leftticks, mm.
 [[nodiscard]] std::vector<std::string> words_of(const std::string& name);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr const char* kChassis = "struct:ChassisSpeeds";
@@ -122,4 +122,4 @@ std::optional<int> guess_body_speeds(const FreeFields& fields, bool holonomic_al
   return std::nullopt;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

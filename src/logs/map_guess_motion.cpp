@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "logs/named_fields.hpp"
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 struct WheelFields {
@@ -176,4 +176,4 @@ void guess_headings(FreeFields& fields, MapText& text) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

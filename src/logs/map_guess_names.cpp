@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 void guess_covariates(const FreeFields& fields, MapText& text) {
@@ -26,8 +26,8 @@ void guess_covariates(const FreeFields& fields, MapText& text) {
     if (one.file.empty()) {
       text.text(name, one.path);
     } else {
-      text.line(fmt::format("{} = {{ file = {}, field = {} }}", name, toml_string(one.file),
-                            toml_string(one.path)));
+      text.line(fmt::format("{} = {{ file = {}, field = {} }}", name, io::toml_string(one.file),
+                            io::toml_string(one.path)));
     }
   }
 }
@@ -154,4 +154,4 @@ Guessed guess_by_names(const std::vector<NamedFacts>& all, bool table,
   return found;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

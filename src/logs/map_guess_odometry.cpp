@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 const std::vector<std::string> kAngleWords{"yaw", "theta", "heading", "angle",
@@ -109,7 +109,7 @@ bool is_in_degrees(const LogFieldFacts& heading) {
 /// Lines of [odometry] or [truth]; `off`: before each.
 void write_poses(const PoseColumns& poses, const std::string& off, MapText& text) {
   const auto line = [&](const char* key, const std::string& value, const char* why = "") {
-    text.line(off + key + " = " + toml_string(value), why);
+    text.line(off + key + " = " + io::toml_string(value), why);
   };
   line("x", poses.x->path);
   line("y", poses.y->path);
@@ -126,7 +126,7 @@ void write_poses(const PoseColumns& poses, const std::string& off, MapText& text
   }
   std::string list;
   for (const NamedFacts* one : poses.quaternion) {
-    list += (list.empty() ? "" : ", ") + toml_string(one->path);
+    list += (list.empty() ? "" : ", ") + io::toml_string(one->path);
   }
   text.line(off + "quaternion = [" + list + "]");
 }
@@ -174,7 +174,7 @@ std::optional<SpeedColumns> speeds_in(const FreeFields& fields, const std::strin
 
 void write_speeds(const SpeedColumns& speeds, const std::string& off, MapText& text) {
   const auto line = [&](const char* key, const std::string& value, const char* why = "") {
-    text.line(off + key + " = " + toml_string(value), why);
+    text.line(off + key + " = " + io::toml_string(value), why);
   };
   line("speed", speeds.speed->path, "held since the row before");
   line("turn_rate", speeds.turn_rate->path);
@@ -293,4 +293,4 @@ bool guess_truth(FreeFields& fields, MapText& text) {
   return false;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

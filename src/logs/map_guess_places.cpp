@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "logs/named_fields.hpp"
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 /// In the unit that its name has, else in this one.
@@ -147,4 +147,4 @@ bool guess_fixes(FreeFields& fields, MapText& text) {
   return guess_planar_fixes({"gps", "gnss", "uwb", "fix", "utm", "east"}, fields, text);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 const std::vector<std::string> kTimeWords{"time", "stamp", "millis", "micros", "clock",
@@ -186,4 +186,4 @@ int guess_times(FreeFields& fields, const std::vector<LogClockFacts>& clocks, Ma
   return to_state;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

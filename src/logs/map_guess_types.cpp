@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 const std::vector<std::string> kMarkWords{"tag",      "marker", "aruco",  "fiducial",
@@ -72,13 +72,13 @@ std::optional<int> wheels_by_type(const LogSurvey& survey, MapText& text) {
       text.number("radius", 0.05, std::string("m; ") + kState);
       ++to_state;
     }
-    text.line("left.field = " + toml_string(topics.left));
-    text.line("right.field = " + toml_string(topics.right));
+    text.line("left.field = " + io::toml_string(topics.left));
+    text.line("right.field = " + io::toml_string(topics.right));
     if (topics.odometry.empty()) return to_state;
     text.blank();
     text.comment("In place of [wheels], as the robot's own odometry has it:");
     text.comment("[odometry]");
-    text.comment("twist = " + toml_string(topics.odometry));
+    text.comment("twist = " + io::toml_string(topics.odometry));
     text.comment("compare = true   # beside [wheels]: says where the two contradict each other");
     return to_state;
   }
@@ -119,7 +119,7 @@ void imu_by_type(const LogSurvey& survey, MapText& text) {
             "compass:");
       }
       text.line(off + "[heading]");
-      text.line(off + "field = " + toml_string(topic->name + "/orientation"));
+      text.line(off + "field = " + io::toml_string(topic->name + "/orientation"));
       text.line(off + "unit = \"quaternion\"");
     }
     if (turns || oriented) return;
@@ -203,8 +203,8 @@ bool place_by_type(const LogSurvey& survey, const LogTopicFacts& topic, MapText&
     text.blank();
     if (!beacon) text.comment("Only if this is the range to a beacon, not to obstacles:");
     text.line(off + "[[sightings]]");
-    text.line(off + "topic = " + toml_string(topic.name));
-    text.line(off + "name = " + toml_string(topic.name.substr(topic.name.rfind('/') + 1)),
+    text.line(off + "topic = " + io::toml_string(topic.name));
+    text.line(off + "name = " + io::toml_string(topic.name.substr(topic.name.rfind('/') + 1)),
               "the beacon");
     text.line(off + "range = \"range\"");
     return beacon;
@@ -246,7 +246,7 @@ bool truth_by_type(const LogSurvey& survey, MapText& text) {
           "Only if measured apart from the robot (motion capture), no estimate of its own:");
     }
     text.line(off + "[truth]");
-    text.line(off + "pose = " + toml_string(topic.name));
+    text.line(off + "pose = " + io::toml_string(topic.name));
     if (is_truth) return true;
   }
   return false;
@@ -291,4 +291,4 @@ Guessed guess_by_types(const LogSurvey& survey, MapText& text) {
   return found;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 bool is_unnamed(const NamedFacts& field) {
@@ -76,4 +76,4 @@ void list_unnamed(const FreeFields& fields, MapText& text) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

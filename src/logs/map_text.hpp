@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 class MapText {
  public:
@@ -19,7 +19,7 @@ class MapText {
   void table(const std::string& name, const std::string& why = "") { line("[" + name + "]", why); }
   void list(const std::string& name, const std::string& why = "") { line("[[" + name + "]]", why); }
   void text(const std::string& key, const std::string& value, const std::string& why = "") {
-    line(key + " = " + toml_string(value), why);
+    line(key + " = " + io::toml_string(value), why);
   }
   void number(const std::string& key, double value, const std::string& why = "") {
     line(fmt::format("{} = {}", key, value), why);
@@ -39,7 +39,7 @@ class MapText {
       const auto byte = static_cast<unsigned char>(c);
       if (byte < 0x20U || byte == 0x7FU) c = '?';
     }
-    return valid_utf8(text);
+    return io::valid_utf8(text);
   }
 
   std::string text_;
@@ -48,4 +48,4 @@ class MapText {
 /// What stands beside a figure that nothing in a log tells.
 inline constexpr const char* kState = "STATE IT: nothing in the log tells";
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr int kDeepest = 16;                                 // structures within structures
@@ -33,8 +33,8 @@ class Variables {
  public:
   explicit Variables(std::string file) : file_(std::move(file)) {}
 
-  void read(const MatElement& element) {
-    if (element.type == kMatCompressed) {
+  void read(const io::MatElement& element) {
+    if (element.type == io::kMatCompressed) {
       std::string bytes;
       try {
         bytes = decompressor_.zlib_of_any_size(element.data, kLargestChunk);
@@ -43,10 +43,10 @@ class Variables {
                          "at byte " + std::to_string(element.begin) + ": " + error.what() +
                              ", expected a variable");
       }
-      MatElements within(bytes, element.begin, file_);
+      io::MatElements within(bytes, element.begin, file_);
       read_variable(within.next(), within);
     } else {
-      MatElements at(element.data, element.begin, file_);
+      io::MatElements at(element.data, element.begin, file_);
       read_variable(element, at);
     }
   }
@@ -72,11 +72,11 @@ class Variables {
   }
 
  private:
-  void read_variable(const MatElement& element, const MatElements& where) {
-    if (element.type != kMatMatrix) where.fail("has an element that is no variable");
+  void read_variable(const io::MatElement& element, const io::MatElements& where) {
+    if (element.type != io::kMatMatrix) where.fail("has an element that is no variable");
     if (element.data.empty()) return;
-    MatElements parts(element.data, element.begin, file_);
-    const MatHead head = mat_head(parts);
+    io::MatElements parts(element.data, element.begin, file_);
+    const io::MatHead head = io::mat_head(parts);
     if (head.is_structure()) {
       read_structure(head, parts, head.name, "", 1);
     } else {
@@ -84,7 +84,7 @@ class Variables {
     }
   }
 
-  void read_structure(const MatHead& head, MatElements& parts, const std::string& table,
+  void read_structure(const io::MatHead& head, io::MatElements& parts, const std::string& table,
                       const std::string& path, int depth) {
     if (depth > kDeepest) parts.fail("has structures more than 16 deep");
     const std::vector<std::string> names = field_names(parts);
@@ -94,8 +94,8 @@ class Variables {
     std::vector<std::vector<double>> each(names.size());
     for (std::size_t k = 0; k < count; ++k) {
       for (std::size_t f = 0; f < names.size(); ++f) {
-        const MatElement field = parts.next();
-        if (field.type != kMatMatrix) parts.fail("has a field that is no array");
+        const io::MatElement field = parts.next();
+        if (field.type != io::kMatMatrix) parts.fail("has a field that is no array");
         if (count == 1) {
           read_field(field, table, name_at(path, names[f]), depth);
         } else {
@@ -116,14 +116,14 @@ class Variables {
     }
   }
 
-  std::vector<std::string> field_names(MatElements& parts) const {
-    const MatElement length = parts.next();
-    if (length.type != kMatInt32 || length.data.size() != 4) {
+  std::vector<std::string> field_names(io::MatElements& parts) const {
+    const io::MatElement length = parts.next();
+    if (length.type != io::kMatInt32 || length.data.size() != 4) {
       parts.fail("has a structure without names");
     }
-    const auto each = mat_number<std::int32_t>(length.data, 0);
-    const MatElement all = parts.next();
-    if (all.type != kMatInt8 || each <= 0 ||
+    const auto each = io::mat_number<std::int32_t>(length.data, 0);
+    const io::MatElement all = parts.next();
+    if (all.type != io::kMatInt8 || each <= 0 ||
         all.data.size() % static_cast<std::size_t>(each) != 0) {
       parts.fail("has a structure without names");
     }
@@ -131,18 +131,19 @@ class Variables {
     for (std::size_t at = 0; at < all.data.size(); at += static_cast<std::size_t>(each)) {
       const std::string_view one = all.data.substr(at, static_cast<std::size_t>(each));
       names.emplace_back(one.substr(0, one.find('\0')));
-      if (names.back().empty() || !is_plain_text(names.back()) || names.size() > kMostFields) {
+      if (names.back().empty() || !text::is_plain_text(names.back()) ||
+          names.size() > kMostFields) {
         parts.fail("has a structure with a field without a name");
       }
     }
     return names;
   }
 
-  void read_field(const MatElement& field, const std::string& table, const std::string& name,
+  void read_field(const io::MatElement& field, const std::string& table, const std::string& name,
                   int depth) {
     if (field.data.empty()) return;
-    MatElements parts(field.data, field.begin, file_);
-    const MatHead head = mat_head(parts);
+    io::MatElements parts(field.data, field.begin, file_);
+    const io::MatHead head = io::mat_head(parts);
     if (head.is_structure()) {
       read_structure(head, parts, table, name, depth + 1);
     } else {
@@ -151,19 +152,19 @@ class Variables {
   }
 
   /// A field of one of several structures; NaN of all else.
-  double lone_number(const MatElement& field) {
+  double lone_number(const io::MatElement& field) {
     constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
     if (field.data.empty()) return kNothing;
-    MatElements parts(field.data, field.begin, file_);
-    const MatHead head = mat_head(parts);
+    io::MatElements parts(field.data, field.begin, file_);
+    const io::MatHead head = io::mat_head(parts);
     if (!head.is_numeric() || head.complex || head.elements() != 1) return kNothing;
     const std::optional<std::vector<double>> values = values_of(parts);
     return values->size() == 1 ? values->front() : kNothing;
   }
 
-  std::optional<std::vector<double>> values_of(MatElements& parts) {
-    const MatElement element = parts.next();
-    std::optional<std::vector<double>> values = mat_numbers(element.type, element.data);
+  std::optional<std::vector<double>> values_of(io::MatElements& parts) {
+    const io::MatElement element = parts.next();
+    std::optional<std::vector<double>> values = io::mat_numbers(element.type, element.data);
     if (!values) parts.fail("has values of an unknown type");
     numbers_ += values->size();
     if (numbers_ > kMostNumbers) parts.fail("has more than a thousand million bytes of numbers");
@@ -171,7 +172,7 @@ class Variables {
   }
 
   /// Of a matrix each column, or row where these are longer.
-  void take(const MatHead& head, MatElements& parts, const std::string& table,
+  void take(const io::MatHead& head, io::MatElements& parts, const std::string& table,
             const std::string& name) {
     if (head.type > 15) return pass_over("objects (tables, timeseries, strings)", 1);
     if (!head.is_numeric()) return pass_over("texts, cells or sparse matrices", 1);
@@ -226,11 +227,11 @@ bool is_mat_file(const std::filesystem::path& file) {
 MatFile read_mat_file(const std::filesystem::path& file) {
   const std::string bytes = read_file(file);
   const std::string name = file.string();
-  require_mat_header(bytes, name);
+  io::require_mat_header(bytes, name);
   Variables variables(name);
-  MatElements elements(std::string_view(bytes).substr(kMatHeader), kMatHeader, name);
+  io::MatElements elements(std::string_view(bytes).substr(io::kMatHeader), io::kMatHeader, name);
   while (!elements.ends()) variables.read(elements.next());
   return variables.finish();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

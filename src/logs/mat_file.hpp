@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct MatColumn {
   std::string name;
@@ -51,4 +51,4 @@ struct MatFile {
 /// The file alone, or one path per table.
 [[nodiscard]] std::vector<std::filesystem::path> mat_logs(const std::filesystem::path& file);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

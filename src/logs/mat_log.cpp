@@ -11,7 +11,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -94,4 +94,4 @@ LogEnd read_mat_log(const fs::path& path, const LogVisit& visit) {
   return end;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -31,7 +31,7 @@
 #include <fstream>
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -302,4 +302,4 @@ LogEnd read_mcap(const fs::path& file, const LogVisit& visit) {
   return {topics.all(), std::move(cut_off)};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -9,10 +9,10 @@
 #include <filesystem>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// Where it is cut off; empty: whole. Throws InputError with `shown` for the name of the file.
 [[nodiscard]] std::string read_mcap_file(const std::filesystem::path& file,
                                          const std::string& shown, BagTopics& topics);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -6,7 +6,7 @@
 
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr std::size_t kLargestDefinition = std::size_t{1} << 20U;    // bytes
@@ -79,4 +79,4 @@ std::optional<std::size_t> McapChannels::number_of(std::uint16_t id) const {
   return channel->second.number;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

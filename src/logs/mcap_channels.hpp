@@ -14,7 +14,7 @@
 #include <string>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// A text with its length before it.
 [[nodiscard]] std::string_view mcap_text(ByteReader& reader);
@@ -51,4 +51,4 @@ class McapChannels {
   std::map<std::uint16_t, Channel> channels_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace trussmap::mcap {
+namespace trussmap::logs::mcap {
 
 inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 
@@ -26,4 +26,4 @@ enum Opcode : std::uint8_t {
   kDataEnd = 0x0F
 };
 
-}  // namespace trussmap::mcap
+}  // namespace trussmap::logs::mcap

@@ -12,7 +12,7 @@
 
 #include <lzma.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 using namespace mcap;
@@ -223,4 +223,4 @@ std::string McapWriter::finish() {
   return std::exchange(*this, McapWriter()).file_;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

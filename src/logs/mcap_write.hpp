@@ -24,7 +24,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// Beyond this a chunk is closed, bytes before compression.
 inline constexpr std::size_t kChunkBytes = std::size_t{1} << 20U;
@@ -80,4 +80,4 @@ class McapWriter {
   std::vector<std::string> chunk_indexes_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <system_error>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ const MessageDefinitions::Definition* MessageDefinitions::find(const std::string
   return known == by_type_.end() ? nullptr : &known->second;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 class MessageDefinitions {
  public:
@@ -42,4 +42,4 @@ class MessageDefinitions {
 /// Nothing: none were given.
 using GivenDefinitions = std::shared_ptr<const MessageDefinitions>;
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

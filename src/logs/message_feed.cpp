@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr double kLargestTime = 4e18;  // ns
@@ -267,4 +267,4 @@ void MessageFeeds::fail(const Feed& feed, const LogEnd& end) const {
       fmt::format("{} has no messages of {}, expected a topic of {}", name, feed.path, topics));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

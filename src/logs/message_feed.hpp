@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// A message with the field that a path leads to.
 struct FedMessage {
@@ -105,4 +105,4 @@ class MessageFeeds {
 /// What follows its topic in a whole path; of a table the column itself.
 [[nodiscard]] std::string below_topic(const std::string& path, const LogTopic& topic);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

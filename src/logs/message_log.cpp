@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,7 +37,7 @@ bool is_message_log(const fs::path& path) {
 }
 
 LogEnd read_message_log(const fs::path& path, const LogVisit& visit) {
-  if (!is_present(path) && !is_mat_log(path)) {
+  if (!files::is_present(path) && !is_mat_log(path)) {
     throw InputError(path.string(), 0, "does not exist, expected a log");
   }
   for (const Format& one : kFormats) {
@@ -63,4 +63,4 @@ void require_messages(const fs::path& path, const LogEnd& end) {
                        ", expected a log with some");
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

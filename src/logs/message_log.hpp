@@ -25,7 +25,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct LogTopic {
   std::string name;      ///< empty of a table, which has but one
@@ -106,4 +106,4 @@ inline constexpr std::uint64_t kLargestChunk = std::uint64_t{256} << 20U;
 /// Throws InputError where a log holds none at all.
 void require_messages(const std::filesystem::path& path, const LogEnd& end);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 TimeMap time_map_of(const toml::table& node, const std::string& file, const char* where) {
@@ -150,4 +150,4 @@ TruthMap truth_of(const toml::table& node, const std::string& file) {
   return truth;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

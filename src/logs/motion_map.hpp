@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// [time] or [[time]]. Throws InputError where two are of the same file.
 [[nodiscard]] std::vector<TimeMap> times_of(const toml::node& node, const std::string& file);
@@ -23,4 +23,4 @@ namespace trussmap {
 /// Paths under `quaternion`: four, two, or none where there is no such key.
 [[nodiscard]] std::vector<std::string> quaternion_of(TomlFields& table);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

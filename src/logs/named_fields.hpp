@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// A log's fields, and which of them are taken.
 class FreeFields {
@@ -85,4 +85,4 @@ bool guess_sightings(FreeFields& fields, MapText& text);
 bool guess_fixes(FreeFields& fields, MapText& text);
 bool guess_truth(FreeFields& fields, MapText& text);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

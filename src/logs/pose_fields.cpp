@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr double kUnit = 0.1;  // how far off 1 a quaternion's length may be
@@ -165,4 +165,4 @@ std::string frame_of(FieldRef message) {
   return frame ? std::string(frame->field().text) : std::string();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -21,7 +21,7 @@
 
 #include <Eigen/Geometry>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct FieldPose {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
@@ -55,4 +55,4 @@ struct FieldTwist {
 /// header.frame_id; empty where there is none.
 [[nodiscard]] std::string frame_of(FieldRef message);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -15,6 +15,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace logs;
+
 namespace {
 
 Pose per_second(const Pose& motion, double seconds) {
@@ -123,7 +125,7 @@ class RecordingBag {
         const BodyMotion motion = drive_.motion(row);
         message.twist = per_second({motion.forward, motion.sideways, motion.turn}, seconds);
         message.twist_covariance =
-            row_covariance(drive_, row, 1.0, seconds, model_.robot, model_.noise) /
+            odometry::row_covariance(drive_, row, 1.0, seconds, model_.robot, model_.noise) /
             (seconds * seconds);
       } else {
         message.twist_covariance.diagonal().setConstant(kUnknownVariance);
@@ -265,7 +267,7 @@ Bag format_recording_bag(const Recording& recording, const Model& model,
   Model as_written = model;
   if (!taken.drive.unicycle.empty()) {  // the joints are those of two wheels that show the same
     for (std::size_t row = 0; row < taken.drive.rows(); ++row) {
-      const auto [left, right] = wheel_travel(taken.drive.motion(row), model.robot);
+      const auto [left, right] = drive::wheel_travel(taken.drive.motion(row), model.robot);
       taken.drive.pair.left.push_back(left);
       taken.drive.pair.right.push_back(right);
     }

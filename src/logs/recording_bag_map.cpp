@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 bool has_topic(const Bag& bag, const std::string& name) {
@@ -73,7 +73,7 @@ void add_survey(MapText& map, const std::vector<SurveyPoint>& survey) {
   for (const SurveyPoint& one : survey) {
     std::string numbers = fmt::format("[{}, {}", one.x, one.y);
     if (!std::isnan(one.heading)) numbers += fmt::format(", {}", one.heading);
-    map.line(toml_string(one.landmark) + " = " + numbers + "]");
+    map.line(io::toml_string(one.landmark) + " = " + numbers + "]");
   }
 }
 
@@ -106,4 +106,4 @@ std::string bag_map(const Bag& bag, const BagMapParts& parts, const DrivenRecord
   return map.str();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

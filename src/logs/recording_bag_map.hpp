@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct BagMapParts {
   /// Columns of the drive, their joints, and whether they steer.
@@ -30,4 +30,4 @@ struct BagMapParts {
                                   const DrivenRecording& recording, const Model& model,
                                   const BagOptions& options);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

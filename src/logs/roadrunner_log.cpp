@@ -29,7 +29,7 @@
 #include <deque>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -358,4 +358,4 @@ LogEnd read_roadrunner_log(const fs::path& file, const LogVisit& visit) {
   return RoadRunnerLog(file, visit).read();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

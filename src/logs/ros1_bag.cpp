@@ -30,7 +30,7 @@
 #include <optional>
 #include <system_error>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -333,4 +333,4 @@ std::string read_ros1_bag(const fs::path& file, const std::string& shown, BagTop
   return Ros1Reader(file, shown, topics).read();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

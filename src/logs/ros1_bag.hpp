@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// Whether the first bytes are those of a bag of ROS 1, of whatever version.
 [[nodiscard]] bool is_ros1_bag(const std::filesystem::path& file);
@@ -19,4 +19,4 @@ namespace trussmap {
 [[nodiscard]] std::string read_ros1_bag(const std::filesystem::path& file, const std::string& shown,
                                         BagTopics& topics);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

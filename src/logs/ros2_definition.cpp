@@ -13,7 +13,7 @@
 #include <optional>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr std::size_t kLongestText = std::size_t{1} << 20U;  // bytes
@@ -349,4 +349,4 @@ Ros2Layout parse_ros1_definition(std::string_view type, std::string_view text) {
   return Parser(type, text, true, nullptr).layout(type);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -34,7 +34,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 class MessageDefinitions;
 
@@ -101,4 +101,4 @@ struct Ros2Layout {
 /// The same of ROS 1, whose text has all types within. Throws DefinitionError.
 [[nodiscard]] Ros2Layout parse_ros1_definition(std::string_view type, std::string_view text);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

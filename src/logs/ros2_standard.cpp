@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 using Definition = std::pair<std::string_view, std::string_view>;
@@ -176,4 +176,4 @@ std::string_view standard_ros2_definition(std::string_view type) {
   return found != kDefinitions.end() && found->first == type ? found->second : std::string_view();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

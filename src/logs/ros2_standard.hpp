@@ -7,9 +7,9 @@
 
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// Of a type as "std_msgs/Header", without those of the types in it; no data() where there is none.
 [[nodiscard]] std::string_view standard_ros2_definition(std::string_view type);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 /// A type's own definition, and the types it names.
@@ -245,4 +245,4 @@ std::string number_to_cdr(double number) {
   return CdrWriter().number(number).bytes();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

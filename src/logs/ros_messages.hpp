@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// Of what was not measured, and must not count.
 inline constexpr double kUnknownVariance = 1e6;
@@ -94,4 +94,4 @@ inline constexpr const char* kNumberType = "std_msgs/msg/Float64";
 [[nodiscard]] std::string text_to_cdr(const std::string& text);
 [[nodiscard]] std::string number_to_cdr(double number);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -26,7 +26,7 @@
 #include <system_error>
 #include <yaml-cpp/yaml.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -213,4 +213,4 @@ LogEnd read_rosbag2(const fs::path& path, const LogVisit& visit) {
   return {topics.all(), std::move(cut_off)};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -12,7 +12,7 @@
 #include <sqlite3.h>
 #include <system_error>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -273,4 +273,4 @@ std::string read_rosbag2_sqlite(const fs::path& file, const std::string& shown, 
   return {};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

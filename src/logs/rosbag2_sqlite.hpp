@@ -20,7 +20,7 @@
 #include <functional>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// What is left out at the end; empty: nothing. Calls `opened` once the file is open. Throws
 /// InputError with `shown` for the name of the file.
@@ -28,4 +28,4 @@ namespace trussmap {
                                               const std::string& shown, BagTopics& topics,
                                               const std::function<void()>& opened);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

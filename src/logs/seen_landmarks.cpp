@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 /// A landmark's place in the robot's base as range, bearing and yaw.
@@ -127,4 +127,4 @@ std::vector<SeenSighting> seen_sightings(const LogMap& map, const GatheredLog& l
   return found;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct SeenSighting {
   std::int64_t t = 0;  ///< ns
@@ -27,4 +27,4 @@ struct SightingCounts {
 [[nodiscard]] std::vector<SeenSighting> seen_sightings(const LogMap& map, const GatheredLog& log,
                                                        SightingCounts& counts);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 /// As it is at that time; nothing of the base itself.
@@ -86,4 +86,4 @@ MountedByFrames mounted_by_frames(const LogMap& map, const GatheredLog& log) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct MountedByFrames {
   Mountings mounted;
@@ -30,4 +30,4 @@ struct MountedByFrames {
 /// Frames that may be the robot's base.
 [[nodiscard]] std::vector<std::string> base_frames(const LogMap& map);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -11,7 +11,7 @@
 
 #include <lzma.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,8 +29,8 @@ SequentialFile::SequentialFile(const fs::path& file, std::string shown)
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) throw InputError(name_, 0, "is a folder, expected a file");
   stream_.open(file, std::ios::binary);
-  if (!stream_) throw unreadable(name_);
-  most_ = most_read(file);
+  if (!stream_) throw files::unreadable(name_);
+  most_ = io::most_read(file);
   if (fs::is_regular_file(file, ignored)) {
     const std::uintmax_t size = fs::file_size(file, ignored);
     if (!ignored) size_ = size;
@@ -55,7 +55,7 @@ std::string_view SequentialFile::read(std::uint64_t count) {
   crc_before_ = crc_;
   if (checked_) crc_ = crc32(found, crc_);
   at_ += there;
-  if (at_ > most_) throw too_long(name_, most_);
+  if (at_ > most_) throw io::too_long(name_, most_);
   return found;
 }
 
@@ -87,4 +87,4 @@ std::string SequentialFile::look(std::uint64_t at, std::size_t count) const {
   return found;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

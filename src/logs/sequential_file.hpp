@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 [[nodiscard]] std::uint32_t crc32(std::string_view bytes, std::uint32_t before = 0);
 
@@ -51,4 +51,4 @@ class SequentialFile {
   std::uint32_t crc_before_ = 0;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

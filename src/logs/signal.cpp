@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr double kNanosecond = 1e-9;  // s
@@ -159,4 +159,4 @@ double Signal::sum(std::int64_t from, std::int64_t to) {
   return total;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

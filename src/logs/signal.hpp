@@ -16,7 +16,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 class Signal {
  public:
@@ -70,4 +70,4 @@ class Signal {
 /// Median time between entries, s; 0 of fewer than two.
 [[nodiscard]] double median_step(const std::vector<std::int64_t>& times);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

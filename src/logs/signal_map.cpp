@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 Unit unit_of(TomlFields& table, const char* key, const char* otherwise,
              const std::vector<Quantity>& allowed) {
@@ -78,7 +78,7 @@ double metres_per_unit(TomlFields& table, const Unit& unit) {
                     unit.name));
   }
   if (per_tick > 0.0) return per_tick;
-  if (per_turn > 0.0 && radius > 0.0) return kFullTurn * radius / per_turn;
+  if (per_turn > 0.0 && radius > 0.0) return geometry::kFullTurn * radius / per_turn;
   table.fail("ticks need metres_per_tick, or ticks_per_turn and radius, expected them");
 }
 
@@ -124,7 +124,7 @@ SignalMap heading_of(const toml::table& node, const std::string& file) {
   signal.offset = si * table.number("offset", 0.0);
   // Readings next to each other are less than half a turn apart: interpolated the short way.
   signal.kind = SignalMap::Kind::cumulative;
-  signal.wraps = kFullTurn / si;
+  signal.wraps = geometry::kFullTurn / si;
   table.finish();
   return signal;
 }
@@ -136,7 +136,7 @@ SignalMap yaw_rate_of(const toml::table& node, const std::string& file) {
   if (signal.quaternion) {
     signal.kind = SignalMap::Kind::cumulative;
     signal.scale = table.sign("sign");
-    signal.wraps = kFullTurn;
+    signal.wraps = geometry::kFullTurn;
   } else {
     const Unit unit = unit_of(table, "unit", "rad/s", {Quantity::turn_rate, Quantity::angle});
     const bool rate = unit.quantity == Quantity::turn_rate;
@@ -148,7 +148,7 @@ SignalMap yaw_rate_of(const toml::table& node, const std::string& file) {
                       unit.name));
     }
     signal.scale = unit.si * table.sign("sign");
-    signal.wraps = kFullTurn / unit.si;
+    signal.wraps = geometry::kFullTurn / unit.si;
   }
   table.finish();
   return signal;
@@ -176,4 +176,4 @@ SignalMap covariate_of(const toml::node& node, const std::string& file, const st
   return signal;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// The unit under `key`, of one of these quantities. Throws InputError on another.
 [[nodiscard]] Unit unit_of(TomlFields& table, const char* key, const char* otherwise,
@@ -28,4 +28,4 @@ namespace trussmap {
 [[nodiscard]] SignalMap covariate_of(const toml::node& node, const std::string& file,
                                      const std::string& name);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr double kAgreementWindow = 1.0;  // s
@@ -162,4 +162,4 @@ std::vector<std::string> TwistBesidePose::contradictions(const std::string& path
   return said;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// Over a window, or a part of one.
 struct PlanarStep {
@@ -95,4 +95,4 @@ class TwistBesidePose {
   double moved_ = 0.0;          // m^2, squares of what the pose moves
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

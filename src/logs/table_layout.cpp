@@ -12,7 +12,7 @@
 #include <map>
 #include <set>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
@@ -56,7 +56,7 @@ struct Division {
 };
 
 Division divided(const std::vector<std::string>& records, char separator) {
-  CsvRecord first;
+  io::CsvRecord first;
   first.read(records[0], 0, separator, true);
   if (first.wrong() != nullptr || first.fields().size() < 2) return {};
   std::size_t rows = 0;
@@ -70,7 +70,7 @@ Division divided(const std::vector<std::string>& records, char separator) {
     }
   };
   count(first.fields());
-  CsvRecord record;
+  io::CsvRecord record;
   for (std::size_t k = 1; k < records.size(); ++k) {
     record.read(records[k], 0, separator, true);
     const bool good = record.wrong() == nullptr && fits(first.fields(), record.fields());
@@ -134,7 +134,7 @@ std::vector<std::string> unique(std::vector<std::string> names) {
 void name_echoed(const std::vector<std::string>& records, TableLayout& layout) {
   if (layout.separator != ',') return;
   std::vector<std::vector<std::string>> rows;
-  CsvRecord record;
+  io::CsvRecord record;
   for (const std::string& one : records) {
     record.read(one, 0, layout.separator, true);
     const bool whole = record.wrong() == nullptr && record.fields().size() == layout.columns.size();
@@ -213,13 +213,13 @@ TableLayout table_layout(const std::vector<std::string>& records, std::string_vi
   } else {
     layout.separator = separator_of(rest);
   }
-  const auto split = [&layout](CsvRecord& record, std::string_view text) -> const Row& {
+  const auto split = [&layout](io::CsvRecord& record, std::string_view text) -> const Row& {
     record.read(text, 0, layout.separator, true);
     return record.fields();
   };
-  CsvRecord one;
-  CsvRecord two;
-  CsvRecord three;
+  io::CsvRecord one;
+  io::CsvRecord two;
+  io::CsvRecord three;
   const Row& first = split(one, rest[0]);
   layout.wrong = one.wrong();
   const Row& second = rest.size() > 1 ? split(two, rest[1]) : two.fields();
@@ -256,4 +256,4 @@ TableLayout table_layout(const std::vector<std::string>& records, std::string_vi
   return layout;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

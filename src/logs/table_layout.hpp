@@ -20,7 +20,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 enum class CellKind { absent, number, text };
 
@@ -63,4 +63,4 @@ class CellReader {
   return separator == ';' ? '\0' : '.';
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -14,7 +14,7 @@
 #include <map>
 #include <numeric>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 struct TimedRows {
@@ -82,4 +82,4 @@ void put_in_order(LogSurvey& survey, const std::filesystem::path& table) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

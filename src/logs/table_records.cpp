@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr std::size_t kLongest = std::size_t{1} << 20U;  // bytes of a record
@@ -78,7 +78,7 @@ void TableRecords::check() {
     }
     cut_off_ = "at byte " + std::to_string(record_.byte + zero) + ": ends with bytes 0";
   }
-  if (const std::size_t bad = invalid_utf8(record_.text); bad != std::string_view::npos) {
+  if (const std::size_t bad = io::invalid_utf8(record_.text); bad != std::string_view::npos) {
     constexpr std::size_t kLongestCharacter = 4;
     if (!record_.ended && bad + kLongestCharacter > record_.text.size()) {
       cut_off_ = "at byte " + std::to_string(record_.byte + bad) + ": ends within a character";
@@ -88,4 +88,4 @@ void TableRecords::check() {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

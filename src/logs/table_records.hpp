@@ -14,7 +14,7 @@
 #include <string>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct TableRecord {
   std::string_view text;  ///< its line end included; valid until the next one is read
@@ -48,4 +48,4 @@ class TableRecords {
   std::string cut_off_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

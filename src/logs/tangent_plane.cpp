@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr double kRadius = 6378137.0;                // m, of the equator
@@ -16,11 +16,11 @@ constexpr double kFlattening = 1.0 / 298.257223563;  // NIMA TR8350.2
 /// Earth-centred, earth-fixed, m.
 std::array<double, 3> earth_centred(double latitude, double longitude, double height) {
   constexpr double kE2 = kFlattening * (2.0 - kFlattening);
-  const double sin = std::sin(latitude * kDegree);
-  const double cos = std::cos(latitude * kDegree);
+  const double sin = std::sin(latitude * geometry::kDegree);
+  const double cos = std::cos(latitude * geometry::kDegree);
   const double normal = kRadius / std::sqrt(1.0 - kE2 * sin * sin);
-  return {(normal + height) * cos * std::cos(longitude * kDegree),
-          (normal + height) * cos * std::sin(longitude * kDegree),
+  return {(normal + height) * cos * std::cos(longitude * geometry::kDegree),
+          (normal + height) * cos * std::sin(longitude * geometry::kDegree),
           ((1.0 - kE2) * normal + height) * sin};
 }
 
@@ -28,8 +28,8 @@ std::array<double, 3> earth_centred(double latitude, double longitude, double he
 
 TangentPlane::TangentPlane(double latitude, double longitude, double height) {
   const std::array<double, 3> origin = earth_centred(latitude, longitude, height);
-  const double lat = latitude * kDegree;
-  const double lon = longitude * kDegree;
+  const double lat = latitude * geometry::kDegree;
+  const double lon = longitude * geometry::kDegree;
   const std::array<double, 3> east{-std::sin(lon), std::cos(lon), 0.0};
   const std::array<double, 3> north{-std::sin(lat) * std::cos(lon), -std::sin(lat) * std::sin(lon),
                                     std::cos(lat)};
@@ -50,4 +50,4 @@ Vector2 TangentPlane::position(double latitude, double longitude, double height)
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

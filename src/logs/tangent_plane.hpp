@@ -9,7 +9,7 @@
 
 #include "trussmap/planar.hpp"
 
-namespace trussmap {
+namespace trussmap::logs {
 
 class TangentPlane {
  public:
@@ -25,4 +25,4 @@ class TangentPlane {
   double north_[3];
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

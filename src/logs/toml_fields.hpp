@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 class TomlFields {
  public:
@@ -157,4 +157,4 @@ class TomlFields {
   std::vector<std::string> asked_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

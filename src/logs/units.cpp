@@ -9,10 +9,10 @@
 #include <regex>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
-constexpr double kDegree = kFullTurn / 360.0;
+constexpr double kDegree = geometry::kFullTurn / 360.0;
 constexpr double kInch = 0.0254;
 
 constexpr Unit kUnits[] = {
@@ -23,7 +23,7 @@ constexpr Unit kUnits[] = {
     {"ft", Quantity::length, 12.0 * kInch},
     {"rad", Quantity::angle, 1.0},
     {"deg", Quantity::angle, kDegree},
-    {"turn", Quantity::angle, kFullTurn},
+    {"turn", Quantity::angle, geometry::kFullTurn},
     {"s", Quantity::time, 1.0},
     {"ms", Quantity::time, 1e-3},
     {"us", Quantity::time, 1e-6},
@@ -37,8 +37,8 @@ constexpr Unit kUnits[] = {
     {"km/h", Quantity::speed, 1.0 / 3.6},
     {"rad/s", Quantity::turn_rate, 1.0},
     {"deg/s", Quantity::turn_rate, kDegree},
-    {"turn/s", Quantity::turn_rate, kFullTurn},
-    {"rpm", Quantity::turn_rate, kFullTurn / 60.0},
+    {"turn/s", Quantity::turn_rate, geometry::kFullTurn},
+    {"rpm", Quantity::turn_rate, geometry::kFullTurn / 60.0},
     {"tick", Quantity::ticks, 1.0},
     {"tick/s", Quantity::ticks, 1.0},
     {"", Quantity::none, 1.0},
@@ -107,4 +107,4 @@ std::string unit_names(Quantity quantity) {
   return names;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 enum class Quantity { none, length, angle, time, speed, turn_rate, ticks };
 
@@ -27,4 +27,4 @@ struct Unit {
 /// Names of the units of this quantity, with commas between.
 [[nodiscard]] std::string unit_names(Quantity quantity);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

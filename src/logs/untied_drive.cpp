@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr double kShortestRest = 2.0;  // s: shorter, and slow wheels stand between two ticks
@@ -72,4 +72,4 @@ std::vector<std::string> untied_warnings(const Drive& drive, const Robot& robot)
   return said;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 /// What a gyro reads while the wheels stand: its bias.
 struct GyroAtRest {
@@ -28,4 +28,4 @@ struct GyroAtRest {
 /// Warnings: what it is good for, and the gyro's bias where its rests tell one.
 [[nodiscard]] std::vector<std::string> untied_warnings(const Drive& drive, const Robot& robot);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 /// Named left and right, and not columns of their own.
@@ -320,4 +320,4 @@ WheelRows wheel_rows(const LogMap& map, GatheredLog& log) {
   return rows;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

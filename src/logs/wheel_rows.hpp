@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct WheelRows {
   std::vector<std::int64_t> bounds;  ///< ns; row k is from bounds[k] to bounds[k + 1]
@@ -44,4 +44,4 @@ struct OdometryRows {
                                                       const FrameTree& frames, const LogMap& map,
                                                       std::size_t line, double clock);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 /// Paths of the two wheels' angles among a JointState's joints.
@@ -133,4 +133,4 @@ std::optional<WheelConstants> wheel_constants(const JoinedLogs& log, const Wheel
   return WheelConstants{rounded(*radius), rounded(*radius / *per_difference)};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

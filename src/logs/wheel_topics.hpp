@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct LogSurvey;
 
@@ -38,4 +38,4 @@ struct WheelTopics {
 [[nodiscard]] std::optional<WheelConstants> wheel_constants(const JoinedLogs& log,
                                                             const WheelTopics& topics);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

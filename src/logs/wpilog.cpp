@@ -28,7 +28,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -302,4 +302,4 @@ LogEnd read_wpilog(const fs::path& file, const LogVisit& visit) {
   return Wpilog(file, visit).read();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 constexpr std::string_view kStructBlanks = " \t\r\n";
@@ -276,4 +276,4 @@ void decode_struct(const StructType& type, std::string_view bytes, std::string_v
   tree.close(group);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -31,7 +31,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 struct StructType;
 
@@ -84,4 +84,4 @@ class StructSchemas {
 void decode_struct(const StructType& type, std::string_view bytes, std::string_view name,
                    std::size_t elements, FieldTree& tree);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

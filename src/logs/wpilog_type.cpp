@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::logs {
 namespace {
 
 struct PlainType {
@@ -126,4 +126,4 @@ void decode_wpilog(const WpilogType& type, ByteReader& payload, std::size_t elem
   tree.close(list);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -26,7 +26,7 @@
 #include <memory>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::logs {
 
 enum class WpilogContent : std::uint8_t {
   boolean,
@@ -57,4 +57,4 @@ struct WpilogType {
 void decode_wpilog(const WpilogType& type, ByteReader& payload, std::size_t elements,
                    FieldTree& tree);
 
-}  // namespace trussmap
+}  // namespace trussmap::logs

@@ -4,7 +4,7 @@
 
 #include "geometry/index.hpp"
 
-namespace trussmap {
+namespace trussmap::map {
 namespace {
 
 /// Sums over places: sum of x_i becomes that of (L x)_i.
@@ -192,4 +192,4 @@ TiePulls pulls_of(const TieSums& tie, const Affine& at_a, const Affine& at_b) {
   return pulls;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -17,7 +17,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::map {
 
 struct Affine {
   Vector2 t = Vector2::Zero();
@@ -103,4 +103,4 @@ struct TiePulls {
 };
 [[nodiscard]] TiePulls pulls_of(const TieSums& tie, const Affine& at_a, const Affine& at_b);
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::map {
 namespace {
 
 constexpr std::size_t kRemembered = 50;
@@ -26,8 +26,8 @@ void ArrivalGate::remember(double squared_misfit) {
   constexpr std::size_t kFewest = 8;
   scale_ = 1.0;
   if (last_.size() < kFewest) return;
-  const double middle = median({last_.begin(), last_.end()});
+  const double middle = statistics::median({last_.begin(), last_.end()});
   scale_ = std::sqrt(std::max(1.0, middle / kChi2Median));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

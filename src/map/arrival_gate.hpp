@@ -14,7 +14,7 @@
 
 #include <deque>
 
-namespace trussmap {
+namespace trussmap::map {
 
 class ArrivalGate {
  public:
@@ -37,4 +37,4 @@ class ArrivalGate {
   std::deque<double> last_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::map

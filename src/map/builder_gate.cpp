@@ -15,7 +15,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::map {
 
 Arrival left_out_at(int landmark) {
   Arrival arrival;
@@ -23,6 +23,11 @@ Arrival left_out_at(int landmark) {
   arrival.landmark = landmark;
   return arrival;
 }
+
+}  // namespace trussmap::map
+
+namespace trussmap {
+using namespace map;
 
 /// What the map knows between two landmarks by one way alone: more uncertain than all it knows.
 Matrix2 MapBuilder::State::along_the_surest_way(int i, int j) const {

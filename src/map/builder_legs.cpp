@@ -14,6 +14,8 @@
 #include <Eigen/LU>
 
 namespace trussmap {
+using namespace map;
+
 // ---------------------------------------- legs in map axes
 
 Arrival MapBuilder::State::arrive(const std::string& landmark, const Traversal& leg) {

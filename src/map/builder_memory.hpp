@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map {
 
 /// What legs in the robot's own axes say of a route, beside the graph's averages.
 struct ReckonedRoute {
@@ -100,23 +100,28 @@ struct BuilderCall {
   std::optional<Arrival::Kind> outcome = {};  ///< of arrive and observe
 };
 
+}  // namespace trussmap::map
+
+namespace trussmap {
+
 class __attribute__((visibility("hidden"))) BuilderAccess {
  public:
   /// A builder with this memory.
-  [[nodiscard]] static MapBuilder restored(BuilderMemory memory, const MapBuilderOptions& options);
+  [[nodiscard]] static MapBuilder restored(map::BuilderMemory memory,
+                                           const MapBuilderOptions& options);
 
   /// All but where the landmarks are: of a large map some may be behind.
-  [[nodiscard]] static const BuilderMemory& memory(const MapBuilder& builder);
+  [[nodiscard]] static const map::BuilderMemory& memory(const MapBuilder& builder);
   /// A copy with the landmarks where they are, and the memory itself after it has been told. Cost:
   /// all landmarks.
-  [[nodiscard]] static BuilderMemory settled_memory(const MapBuilder& builder);
-  static const BuilderMemory& settle_memory(MapBuilder& builder);
+  [[nodiscard]] static map::BuilderMemory settled_memory(const MapBuilder& builder);
+  static const map::BuilderMemory& settle_memory(MapBuilder& builder);
 
   /// From now on every call that succeeds is put into `journal`, which outlives the builder; null:
   /// no longer.
-  static void keep_journal(MapBuilder& builder, std::vector<BuilderCall>* journal);
+  static void keep_journal(MapBuilder& builder, std::vector<map::BuilderCall>* journal);
   [[nodiscard]] static bool has_journal(const MapBuilder& builder,
-                                        const std::vector<BuilderCall>* journal);
+                                        const std::vector<map::BuilderCall>* journal);
 };
 
 }  // namespace trussmap

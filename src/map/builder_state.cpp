@@ -15,6 +15,8 @@
 #include <Eigen/LU>
 
 namespace trussmap {
+using namespace map;
+
 namespace {
 
 constexpr std::size_t kMostUnwritten = 4096;  // then all are written
@@ -43,6 +45,10 @@ void check_options(const MapBuilderOptions& options) {
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::map {
+
 StiffnessLaw law_of(const MapBuilderOptions& options) {
   return options.law.value_or(options.method == Method::gauss_markov ? StiffnessLaw::variance
                                                                      : StiffnessLaw::mean_error);
@@ -51,6 +57,10 @@ StiffnessLaw law_of(const MapBuilderOptions& options) {
 bool weighs_each(const MapBuilderOptions& options) {
   return law_of(options) == StiffnessLaw::variance && !options.pooled;
 }
+
+}  // namespace trussmap::map
+
+namespace trussmap {
 
 MapBuilder::State::State(const MapBuilderOptions& options, BuilderMemory memory)
     : options_(options), m_(std::move(memory)), mechanics_(scope_of(options), law_of(options)) {
@@ -129,9 +139,9 @@ double MapBuilder::State::usual_corner_variance() const {
 }
 
 /// What a drive along a way measures, in the order in which it does.
-std::vector<Element> MapBuilder::State::measured_along(const std::vector<int>& way,
-                                                       double corner_variance) const {
-  std::vector<Element> measured;
+std::vector<truss::Element> MapBuilder::State::measured_along(const std::vector<int>& way,
+                                                              double corner_variance) const {
+  std::vector<truss::Element> measured;
   int before = -1;
   if (!way.empty() && way.front() == m_.here && m_.earlier) before = m_.earlier->landmark;
   for (std::size_t n = 1; n < way.size(); ++n) {
@@ -144,22 +154,23 @@ std::vector<Element> MapBuilder::State::measured_along(const std::vector<int>& w
     const Route& route = m_.graph.route(*number);
     const int place = reckoned_at_[idx(*number)];
     if (place < 0 || m_.reckoned[idx(place)].length.count == 0) {
-      measured.push_back(bar_element(route.source, route.target, route.covariance.inverse(), {}));
+      measured.push_back(
+          truss::bar_element(route.source, route.target, route.covariance.inverse(), {}));
       before = -1;
       continue;
     }
     const ReckonedRoute& reckoned = m_.reckoned[idx(place)];
     measured.push_back(
-        length_element(route.source, route.target, 1.0 / reckoned.length.variance, 0.0));
+        truss::length_element(route.source, route.target, 1.0 / reckoned.length.variance, 0.0));
     if (m_.frame == Frame::axes && reckoned.direction.count > 0) {
-      measured.push_back(
-          direction_element(route.source, route.target, 1.0 / reckoned.direction.variance, 0.0));
+      measured.push_back(truss::direction_element(route.source, route.target,
+                                                  1.0 / reckoned.direction.variance, 0.0));
     }
     if (before >= 0 && before != j && corner_variance > 0.0) {
       const std::optional<int> known = corner_of(before, i, j);
       const double variance = known ? m_.corners[idx(*known)].angle.variance : corner_variance;
       measured.push_back(
-          corner_element(std::min(before, j), i, std::max(before, j), 1.0 / variance, 0.0));
+          truss::corner_element(std::min(before, j), i, std::max(before, j), 1.0 / variance, 0.0));
     }
     before = i;
   }
@@ -257,7 +268,7 @@ void MapBuilder::State::turn_map(double angle) {
     for (const ReckonedRoute& one : m_.reckoned) {
       const int element = elements_[idx(one.route)].direction;
       if (element < 0) continue;
-      Element turned = mechanics_.truss().element(element);
+      truss::Element turned = mechanics_.truss().element(element);
       turned.rest += angle;
       mechanics_.set_element(element, turned);
     }

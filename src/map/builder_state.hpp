@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map {
 
 /// A measured way from one landmark to another, ready to be taken in.
 struct MeasuredLeg {
@@ -35,9 +35,13 @@ struct MeasuredLeg {
 /// Nothing moves.
 [[nodiscard]] Arrival left_out_at(int landmark);
 
+}  // namespace trussmap::map
+
+namespace trussmap {
+
 class __attribute__((visibility("hidden"))) MapBuilder::State {
  public:
-  State(const MapBuilderOptions& options, BuilderMemory memory);
+  State(const MapBuilderOptions& options, map::BuilderMemory memory);
 
   void set_options(const MapBuilderOptions& options);
   void start(const std::string& landmark, const LandmarkOffset& seen, const Vector2& position);
@@ -58,12 +62,12 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   [[nodiscard]] Vector2 position(int landmark) const { return at(landmark); }
   [[nodiscard]] LandmarkGraph map() const;
   /// Its graph's positions may be behind, but for the others.
-  [[nodiscard]] const BuilderMemory& memory() const { return m_; }
-  [[nodiscard]] BuilderMemory settled_memory() const;
-  const BuilderMemory& settle_memory() noexcept;
-  [[nodiscard]] const MapMechanics& mechanics() const { return mechanics_; }
+  [[nodiscard]] const map::BuilderMemory& memory() const { return m_; }
+  [[nodiscard]] map::BuilderMemory settled_memory() const;
+  const map::BuilderMemory& settle_memory() noexcept;
+  [[nodiscard]] const map::MapMechanics& mechanics() const { return mechanics_; }
 
-  std::vector<BuilderCall>* journal = nullptr;
+  std::vector<map::BuilderCall>* journal = nullptr;
 
  private:
   /// Elements of a route in the truss, -1: none.
@@ -81,73 +85,75 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
     bool new_route = false;
     bool ends_first_heading = false;  ///< a compass gives the map its direction from now on
     Route average;
-    std::optional<ReckonedRoute> reckoned;
+    std::optional<map::ReckonedRoute> reckoned;
     int reckoned_place = -1;
-    std::optional<WeighedRoute> weighed;
+    std::optional<map::WeighedRoute> weighed;
     RouteElements elements;
-    std::optional<CornerAverage> corner;
+    std::optional<map::CornerAverage> corner;
     int corner_place = -1;
     int corner_element = -1;
   };
 
-  [[nodiscard]] StiffnessLaw law() const { return law_of(options_); }
+  [[nodiscard]] StiffnessLaw law() const { return map::law_of(options_); }
   [[nodiscard]] bool printed() const { return options_.method == Method::elastic_printed; }
   [[nodiscard]] Vector2 at(int landmark) const { return mechanics_.position(landmark); }
   void make_truss();
   [[nodiscard]] State by_variance() const;
   [[nodiscard]] double usual_corner_variance() const;
-  [[nodiscard]] std::vector<Element> measured_along(const std::vector<int>& way,
-                                                    double corner_variance) const;
+  [[nodiscard]] std::vector<truss::Element> measured_along(const std::vector<int>& way,
+                                                           double corner_variance) const;
 
   [[nodiscard]] int standing() const;
   [[nodiscard]] std::optional<int> other_landmark(const std::string& name) const;
-  Arrival travel(const std::string& landmark, const MeasuredLeg& leg);
-  Arrival travel_gated(const std::string& landmark, const MeasuredLeg& leg);
+  Arrival travel(const std::string& landmark, const map::MeasuredLeg& leg);
+  Arrival travel_gated(const std::string& landmark, const map::MeasuredLeg& leg);
   [[nodiscard]] Matrix2 along_the_surest_way(int i, int j) const;
   [[nodiscard]] Matrix2 known_of_route(int number) const;
   [[nodiscard]] std::optional<int> corner_of(int i, int j, int k) const;
   [[nodiscard]] double angle_variance(int i, int j, int k) const;
   [[nodiscard]] Matrix2 known_between(int i, int j);
   [[nodiscard]] double squared_misfit(int i, int j, const Traversal& leg);
-  void bring_back(std::size_t place, const MeasuredLeg& leg, Arrival& arrival);
+  void bring_back(std::size_t place, const map::MeasuredLeg& leg, Arrival& arrival);
   void take_back_in(Arrival& arrival);
-  Arrival reach(const std::string& landmark, const MeasuredLeg& leg, bool past_left_out);
-  Arrival pass_to(int landmark, const MeasuredLeg& leg);
-  void take_late(const std::string& landmark, const MeasuredLeg& leg, Arrival& arrival);
+  Arrival reach(const std::string& landmark, const map::MeasuredLeg& leg, bool past_left_out);
+  Arrival pass_to(int landmark, const map::MeasuredLeg& leg);
+  void take_late(const std::string& landmark, const map::MeasuredLeg& leg, Arrival& arrival);
   [[nodiscard]] bool fits_from_said(int to, const Motion& motion, const LandmarkOffset& seen) const;
   Arrival drive(const std::string& landmark, const Motion& motion, const LandmarkOffset& seen);
   Arrival drive_back(const Motion& whole, const LandmarkOffset& seen);
   Arrival drive_from_said(const std::string& landmark, const Motion& motion,
                           const LandmarkOffset& seen);
-  Arrival take_in(const std::string& landmark, const MeasuredLeg& leg);
+  Arrival take_in(const std::string& landmark, const map::MeasuredLeg& leg);
 
-  [[nodiscard]] Step averaged(int to, bool is_new, const MeasuredLeg& leg) const;
-  void average_corner(Step& step, const MeasuredLeg& leg) const;
-  [[nodiscard]] Element bar_of(const Step& step) const;
+  [[nodiscard]] Step averaged(int to, bool is_new, const map::MeasuredLeg& leg) const;
+  void average_corner(Step& step, const map::MeasuredLeg& leg) const;
+  [[nodiscard]] truss::Element bar_of(const Step& step) const;
   void put_elements(Step& step);
-  void close_chain(const Step& step, const OpenChain::Closing& closing, const MeasuredLeg& leg);
-  [[nodiscard]] TurningLeg turning_leg(int from, int to, const RouteElements& elements,
-                                       int corner_element) const;
+  void close_chain(const Step& step, const map::OpenChain::Closing& closing,
+                   const map::MeasuredLeg& leg);
+  [[nodiscard]] map::TurningLeg turning_leg(int from, int to, const RouteElements& elements,
+                                            int corner_element) const;
   int refine(const Step& step);
   int refine_as_printed(const Step& step);
   void remember(const Step& step, const std::string& landmark, const Traversal& in_map);
   void note_moves(Arrival& arrival) noexcept;
   void write_positions(LandmarkGraph& graph) const noexcept;
 
-  [[nodiscard]] HeadingEstimate heading_for(const std::optional<int>& to, const Chord& chord) const;
-  [[nodiscard]] MeasuredLeg reckoned(const HeadingEstimate& heading, const Chord& chord,
-                                     bool takes_reading) const;
-  [[nodiscard]] MeasuredAngle direction_by(const HeadingEstimate& heading,
-                                           const Chord& chord) const;
-  [[nodiscard]] HeadingEstimate heading_after(bool was_known, int to, const Chord& chord,
+  [[nodiscard]] HeadingEstimate heading_for(const std::optional<int>& to,
+                                            const map::Chord& chord) const;
+  [[nodiscard]] map::MeasuredLeg reckoned(const HeadingEstimate& heading, const map::Chord& chord,
+                                          bool takes_reading) const;
+  [[nodiscard]] map::MeasuredAngle direction_by(const HeadingEstimate& heading,
+                                                const map::Chord& chord) const;
+  [[nodiscard]] HeadingEstimate heading_after(bool was_known, int to, const map::Chord& chord,
                                               const HeadingEstimate& before,
                                               const LandmarkOffset& seen) const;
   void settle_frame() noexcept;
   void turn_map(double angle);
 
   MapBuilderOptions options_;
-  BuilderMemory m_;
-  MapMechanics mechanics_;
+  map::BuilderMemory m_;
+  map::MapMechanics mechanics_;
   std::vector<int> unwritten_;           ///< landmarks that have moved, and in the graph not yet
   bool all_unwritten_ = false;           ///< any may have
   std::vector<RouteElements> elements_;  ///< per route

@@ -11,6 +11,8 @@
 #include <Eigen/LU>
 
 namespace trussmap {
+using namespace map;
+
 namespace {
 
 /// L of corners and of directions, m, under the law 1/mean error. As long as their routes they
@@ -136,18 +138,18 @@ void MapBuilder::State::average_corner(Step& step, const MeasuredLeg& leg) const
   if (step.reckoned->corner < 0) step.reckoned->corner = step.corner_place;
 }
 
-Element MapBuilder::State::bar_of(const Step& step) const {
+truss::Element MapBuilder::State::bar_of(const Step& step) const {
   const Route& route = step.reckoned ? step.reckoned->bar : step.average;
   const int i = step.average.source;
   const int j = step.average.target;
-  if (step.weighed) return bar_element(i, j, step.weighed->information, step.weighed->mean);
+  if (step.weighed) return truss::bar_element(i, j, step.weighed->information, step.weighed->mean);
   const Matrix2 B = bar_stiffness(law(), route.covariance, route.orientation, route.traversals);
-  return bar_element(i, j, B,
-                     law() == StiffnessLaw::variance ? route.displacement : route.mean_vector());
+  return truss::bar_element(
+      i, j, B, law() == StiffnessLaw::variance ? route.displacement : route.mean_vector());
 }
 
 void MapBuilder::State::put_elements(Step& step) {
-  const auto put = [this](int& number, const Element& element) {
+  const auto put = [this](int& number, const truss::Element& element) {
     if (number < 0) {
       number = mechanics_.add_element(element);
     } else {
@@ -159,7 +161,7 @@ void MapBuilder::State::put_elements(Step& step) {
   if (step.corner) {
     const CornerAverage& one = *step.corner;
     const double k = spring_stiffness(law(), one.angle.variance, one.angle.count, kCornerArm);
-    put(step.corner_element, corner_element(one.i, one.j, one.k, k, one.angle.mean));
+    put(step.corner_element, truss::corner_element(one.i, one.j, one.k, k, one.angle.mean));
   }
   if (step.route < 0) return;
   const bool has_bar = !step.reckoned || step.reckoned->bar.traversals > 0;
@@ -169,15 +171,15 @@ void MapBuilder::State::put_elements(Step& step) {
   const Average& direction = step.reckoned->direction;
   if (length.count > 0) {
     const double k = spring_stiffness(law(), length.variance, length.count);
-    put(step.elements.length, length_element(i, j, k, length.mean));
+    put(step.elements.length, truss::length_element(i, j, k, length.mean));
   }
   if (direction.count > 0) {
     const double k = spring_stiffness(law(), direction.variance, direction.count, kDirectionArm);
-    put(step.elements.direction, direction_element(i, j, k, direction.mean));
+    put(step.elements.direction, truss::direction_element(i, j, k, direction.mean));
   }
   if (step.ends_first_heading && m_.first_direction != step.reckoned_place) {
     int element = elements_[idx(m_.reckoned[idx(m_.first_direction)].route)].direction;
-    Element slack = mechanics_.truss().element(element);
+    truss::Element slack = mechanics_.truss().element(element);
     slack.k = 0.0;
     put(element, slack);
   }
@@ -185,7 +187,7 @@ void MapBuilder::State::put_elements(Step& step) {
 
 TurningLeg MapBuilder::State::turning_leg(int from, int to, const RouteElements& elements,
                                           int corner_element) const {
-  const ElasticTruss& truss = mechanics_.truss();
+  const truss::ElasticTruss& truss = mechanics_.truss();
   TurningLeg leg;
   leg.from = at(from);
   if (elements.bar >= 0) {
@@ -268,12 +270,12 @@ int MapBuilder::State::refine_as_printed(const Step& step) {
 /// All that may fail, then what cannot.
 void MapBuilder::State::remember(const Step& step, const std::string& landmark,
                                  const Traversal& in_map) {
-  make_room(m_.reckoned);
-  make_room(m_.corners);
-  make_room(m_.weighed);
-  make_room(elements_);
-  make_room(reckoned_at_);
-  make_room(corner_elements_);
+  geometry::make_room(m_.reckoned);
+  geometry::make_room(m_.corners);
+  geometry::make_room(m_.weighed);
+  geometry::make_room(elements_);
+  geometry::make_room(reckoned_at_);
+  geometry::make_room(corner_elements_);
   m_.chain.reserve(std::max(m_.graph.landmarks(), step.to) + 1);
   const bool new_corner = step.corner && step.corner_place == static_cast<int>(m_.corners.size());
   std::map<std::array<int, 3>, int>::iterator corner;

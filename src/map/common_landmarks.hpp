@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map {
 
 struct CommonLandmarks {
   std::vector<std::string> names;
@@ -22,4 +22,4 @@ struct CommonLandmarks {
                                                const std::vector<SurveyPoint>& survey,
                                                const std::vector<std::string>& leave_out);
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -7,11 +7,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::map {
 
 ExpectedFalls::ExpectedFalls(MapMechanics& mechanics, bool aligned)
     : mechanics_(mechanics), aligned_(aligned) {
-  const ElasticTruss& truss = mechanics.truss();
+  const truss::ElasticTruss& truss = mechanics.truss();
   Vector2 middle = Vector2::Zero();
   for (const Vector2& at : truss.positions()) middle += at / truss.joints();
   turn_.resize(2 * truss.joints());
@@ -45,13 +45,13 @@ const ExpectedFalls::Column& ExpectedFalls::column(const Key& key, const Load& g
 }
 
 /// What an element measures, one number or two: the gradient of each.
-std::vector<ExpectedFalls::Load> ExpectedFalls::gradients(const Element& one) const {
+std::vector<ExpectedFalls::Load> ExpectedFalls::gradients(const truss::Element& one) const {
   const auto [i, j, k] = one.joints;
-  if (one.kind == Element::Kind::bar) {
+  if (one.kind == truss::Element::Kind::bar) {
     return {{{i, -Vector2::UnitX()}, {j, Vector2::UnitX()}},
             {{i, -Vector2::UnitY()}, {j, Vector2::UnitY()}}};
   }
-  const Strain strain = strain_of(mechanics_.truss(), one);
+  const truss::Strain strain = truss::strain_of(mechanics_.truss(), one);
   Load gradient;
   for (int n = 0; n < one.count(); ++n) {
     gradient.emplace_back(one.joints[idx(n)], strain.gradient[idx(n)]);
@@ -59,9 +59,9 @@ std::vector<ExpectedFalls::Load> ExpectedFalls::gradients(const Element& one) co
   return {gradient};
 }
 
-double ExpectedFalls::of(const std::vector<Element>& measured) {
+double ExpectedFalls::of(const std::vector<truss::Element>& measured) {
   std::vector<const Column*> columns;
-  for (const Element& one : measured) {
+  for (const truss::Element& one : measured) {
     int part = 0;
     for (const Load& gradient : gradients(one)) {
       columns.push_back(&column({one.joints, one.kind, part++}, gradient));
@@ -81,8 +81,8 @@ double ExpectedFalls::of(const std::vector<Element>& measured) {
     }
   }
   Eigen::Index at = 0;
-  for (const Element& one : measured) {
-    if (one.kind == Element::Kind::bar) {
+  for (const truss::Element& one : measured) {
+    if (one.kind == truss::Element::Kind::bar) {
       S.block<2, 2>(at, at) += one.B.inverse();
       at += 2;
     } else {
@@ -93,4 +93,4 @@ double ExpectedFalls::of(const std::vector<Element>& measured) {
   return S.llt().solve(squares).trace();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -25,7 +25,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::map {
 
 class ExpectedFalls {
  public:
@@ -34,18 +34,19 @@ class ExpectedFalls {
 
   /// Of all of these together, each with the stiffness of what measures it. Throws SolveError where
   /// the truss's stiffnesses span too many magnitudes.
-  double of(const std::vector<Element>& measured);
+  double of(const std::vector<truss::Element>& measured);
 
  private:
-  using Load = std::vector<std::pair<int, Vector2>>;               // joint, force
-  using Key = std::tuple<std::array<int, 3>, Element::Kind, int>;  // and which of its numbers
+  using Load = std::vector<std::pair<int, Vector2>>;  // joint, force
+  using Key =
+      std::tuple<std::array<int, 3>, truss::Element::Kind, int>;  // and which of its numbers
   struct Column {
     Load gradient;
     Eigen::VectorXd displacement;  ///< of all joints
     Eigen::VectorXd counted;       ///< the part of it that the sum of variances counts
   };
 
-  [[nodiscard]] std::vector<Load> gradients(const Element& one) const;
+  [[nodiscard]] std::vector<Load> gradients(const truss::Element& one) const;
   const Column& column(const Key& key, const Load& gradient);
   [[nodiscard]] Eigen::VectorXd within_the_map(Eigen::VectorXd displacement) const;
 
@@ -55,4 +56,4 @@ class ExpectedFalls {
   std::map<Key, Column> columns_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::map

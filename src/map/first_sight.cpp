@@ -11,7 +11,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::map {
 
 std::vector<Vector2> chain_displacements(const std::vector<Matrix2>& stiffnesses,
                                          const Vector2& imposed) {
@@ -99,4 +99,4 @@ void OpenChain::settle(const Closing& closing, int b) noexcept {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

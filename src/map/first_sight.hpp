@@ -30,7 +30,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map {
 
 /// Displacements of the joints along a chain held at its start, the end displaced by `imposed`:
 /// one per bar, the last equal to `imposed`. `stiffnesses`: 2x2, symmetric positive definite, in
@@ -93,4 +93,4 @@ class OpenChain {
   std::vector<int> root_;  ///< settled landmark -> what its loop hangs on, or above it; else -1
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -40,7 +40,7 @@
 #include <boost/iterator/transform_iterator.hpp>
 #include <boost/property_map/property_map.hpp>
 
-namespace trussmap {
+namespace trussmap::map {
 
 /// A route, and the end that one stands at.
 struct RouteFrom {
@@ -111,7 +111,7 @@ struct RouteNumber {
   friend int get(const RouteNumber& /*map*/, const RouteFrom& edge) { return edge.route; }
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::map
 
 namespace boost {
 
@@ -128,12 +128,12 @@ struct graph_traits<trussmap::LandmarkGraph> {
   using edge_parallel_category = disallow_parallel_edge_tag;
 
   using vertex_descriptor = int;
-  using edge_descriptor = trussmap::RouteFrom;
+  using edge_descriptor = trussmap::map::RouteFrom;
   using vertex_iterator = counting_iterator<int>;
-  using edge_iterator = transform_iterator<trussmap::FromItsSource, counting_iterator<int>>;
-  using out_edge_iterator = transform_iterator<trussmap::LeavingFrom, Routes>;
-  using in_edge_iterator = transform_iterator<trussmap::ArrivingAt, Routes>;
-  using adjacency_iterator = transform_iterator<trussmap::OtherEndFrom, Routes>;
+  using edge_iterator = transform_iterator<trussmap::map::FromItsSource, counting_iterator<int>>;
+  using out_edge_iterator = transform_iterator<trussmap::map::LeavingFrom, Routes>;
+  using in_edge_iterator = transform_iterator<trussmap::map::ArrivingAt, Routes>;
+  using adjacency_iterator = transform_iterator<trussmap::map::OtherEndFrom, Routes>;
   using vertices_size_type = std::size_t;
   using edges_size_type = std::size_t;
   using degree_size_type = std::size_t;
@@ -148,17 +148,17 @@ struct property_map<trussmap::LandmarkGraph, vertex_index_t> {
 };
 template <>
 struct property_map<trussmap::LandmarkGraph, edge_index_t> {
-  using type = trussmap::RouteNumber;
+  using type = trussmap::map::RouteNumber;
   using const_type = type;
 };
 template <typename Value>
 struct property_map<trussmap::LandmarkGraph, Value trussmap::Landmark::*> {
-  using type = trussmap::LandmarkField<Value>;
+  using type = trussmap::map::LandmarkField<Value>;
   using const_type = type;
 };
 template <typename Value>
 struct property_map<trussmap::LandmarkGraph, Value trussmap::Route::*> {
-  using type = trussmap::RouteField<Value>;
+  using type = trussmap::map::RouteField<Value>;
   using const_type = type;
 };
 template <typename Property>
@@ -167,12 +167,17 @@ struct property_map<const trussmap::LandmarkGraph, Property>
 
 }  // namespace boost
 
-namespace trussmap {
+namespace trussmap::map {
 
 using GraphTraits = boost::graph_traits<LandmarkGraph>;
 
 template <typename Iterator>
 using IteratorPair = std::pair<Iterator, Iterator>;
+
+}  // namespace trussmap::map
+
+// Beside the graph's type, where Boost's algorithms look for them.
+namespace trussmap {
 
 inline std::size_t num_vertices(const LandmarkGraph& graph) {
   return static_cast<std::size_t>(graph.landmarks());
@@ -181,14 +186,14 @@ inline std::size_t num_edges(const LandmarkGraph& graph) {
   return static_cast<std::size_t>(graph.routes());
 }
 
-inline IteratorPair<GraphTraits::vertex_iterator> vertices(const LandmarkGraph& graph) {
-  using Iterator = GraphTraits::vertex_iterator;
+inline map::IteratorPair<map::GraphTraits::vertex_iterator> vertices(const LandmarkGraph& graph) {
+  using Iterator = map::GraphTraits::vertex_iterator;
   return {Iterator(0), Iterator(graph.landmarks())};
 }
 /// Each from its source.
-inline IteratorPair<GraphTraits::edge_iterator> edges(const LandmarkGraph& graph) {
+inline map::IteratorPair<map::GraphTraits::edge_iterator> edges(const LandmarkGraph& graph) {
   using Number = boost::counting_iterator<int>;
-  const FromItsSource seen{&graph};
+  const map::FromItsSource seen{&graph};
   return {{Number(0), seen}, {Number(graph.routes()), seen}};
 }
 
@@ -201,33 +206,33 @@ inline std::size_t out_degree(int landmark, const LandmarkGraph& graph) {
 inline std::size_t in_degree(int landmark, const LandmarkGraph& graph) {
   return degree(landmark, graph);
 }
-inline IteratorPair<GraphTraits::out_edge_iterator> out_edges(int landmark,
-                                                              const LandmarkGraph& graph) {
+inline map::IteratorPair<map::GraphTraits::out_edge_iterator> out_edges(
+    int landmark, const LandmarkGraph& graph) {
   const std::vector<int>& routes = graph.routes_at(landmark);
-  const LeavingFrom seen{landmark};
+  const map::LeavingFrom seen{landmark};
   return {{routes.begin(), seen}, {routes.end(), seen}};
 }
-inline IteratorPair<GraphTraits::in_edge_iterator> in_edges(int landmark,
-                                                            const LandmarkGraph& graph) {
+inline map::IteratorPair<map::GraphTraits::in_edge_iterator> in_edges(int landmark,
+                                                                      const LandmarkGraph& graph) {
   const std::vector<int>& routes = graph.routes_at(landmark);
-  const ArrivingAt seen{&graph, landmark};
+  const map::ArrivingAt seen{&graph, landmark};
   return {{routes.begin(), seen}, {routes.end(), seen}};
 }
-inline IteratorPair<GraphTraits::adjacency_iterator> adjacent_vertices(int landmark,
-                                                                       const LandmarkGraph& graph) {
+inline map::IteratorPair<map::GraphTraits::adjacency_iterator> adjacent_vertices(
+    int landmark, const LandmarkGraph& graph) {
   const std::vector<int>& routes = graph.routes_at(landmark);
-  const OtherEndFrom seen{&graph, landmark};
+  const map::OtherEndFrom seen{&graph, landmark};
   return {{routes.begin(), seen}, {routes.end(), seen}};
 }
 
-inline int source(const RouteFrom& edge, const LandmarkGraph& /*graph*/) {
+inline int source(const map::RouteFrom& edge, const LandmarkGraph& /*graph*/) {
   return edge.from;
 }
-inline int target(const RouteFrom& edge, const LandmarkGraph& graph) {
+inline int target(const map::RouteFrom& edge, const LandmarkGraph& graph) {
   return other_end(graph.route(edge.route), edge.from);
 }
 /// From a to b, and whether there is one.
-inline std::pair<RouteFrom, bool> edge(int a, int b, const LandmarkGraph& graph) {
+inline std::pair<map::RouteFrom, bool> edge(int a, int b, const LandmarkGraph& graph) {
   const std::optional<int> route = graph.route_between(a, b);
   return {{route.value_or(-1), a}, route.has_value()};
 }
@@ -239,15 +244,15 @@ inline boost::typed_identity_property_map<int> get(boost::vertex_index_t /*which
 inline int get(boost::vertex_index_t /*which*/, const LandmarkGraph& /*graph*/, int landmark) {
   return landmark;
 }
-inline RouteNumber get(boost::edge_index_t /*which*/, const LandmarkGraph& /*graph*/) {
+inline map::RouteNumber get(boost::edge_index_t /*which*/, const LandmarkGraph& /*graph*/) {
   return {};
 }
 inline int get(boost::edge_index_t /*which*/, const LandmarkGraph& /*graph*/,
-               const RouteFrom& edge) {
+               const map::RouteFrom& edge) {
   return edge.route;
 }
 template <typename Value>
-LandmarkField<Value> get(Value Landmark::*field, const LandmarkGraph& graph) {
+map::LandmarkField<Value> get(Value Landmark::*field, const LandmarkGraph& graph) {
   return {&graph, field};
 }
 template <typename Value>
@@ -255,11 +260,11 @@ const Value& get(Value Landmark::*field, const LandmarkGraph& graph, int landmar
   return graph.landmark(landmark).*field;
 }
 template <typename Value>
-RouteField<Value> get(Value Route::*field, const LandmarkGraph& graph) {
+map::RouteField<Value> get(Value Route::*field, const LandmarkGraph& graph) {
   return {&graph, field};
 }
 template <typename Value>
-const Value& get(Value Route::*field, const LandmarkGraph& graph, const RouteFrom& edge) {
+const Value& get(Value Route::*field, const LandmarkGraph& graph, const map::RouteFrom& edge) {
   return graph.route(edge.route).*field;
 }
 

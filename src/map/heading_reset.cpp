@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "map/heading_reset.hpp"
 
-namespace trussmap {
+namespace trussmap::map {
 
 double direction_variance(const Vector2& vector, const Matrix2& covariance) {
   const double length2 = vector.squaredNorm();
@@ -23,4 +23,4 @@ HeadingEstimate with_reading(const std::optional<HeadingEstimate>& known,
   return reset_heading(*known, reading.heading - known->heading, reading.variance);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -17,7 +17,7 @@
 
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::map {
 
 /// Variance of a vector's direction: its covariance across it over its squared length, rad^2.
 [[nodiscard]] double direction_variance(const Vector2& vector, const Matrix2& covariance);
@@ -30,4 +30,4 @@ namespace trussmap {
 [[nodiscard]] HeadingEstimate with_reading(const std::optional<HeadingEstimate>& known,
                                            const HeadingEstimate& reading);
 
-}  // namespace trussmap
+}  // namespace trussmap::map

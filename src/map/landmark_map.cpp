@@ -13,8 +13,8 @@ namespace trussmap {
 int LandmarkGraph::add_landmark(const std::string& name, const Vector2& position) {
   if (name.empty()) throw std::invalid_argument("a landmark needs a name");
   const int number = landmarks();
-  make_room(landmarks_);
-  make_room(routes_at_);
+  geometry::make_room(landmarks_);
+  geometry::make_room(routes_at_);
   Landmark landmark{name, position, std::nullopt};
   if (!numbers_.emplace(name, number).second) {
     throw std::invalid_argument("landmark " + name + " is in the map already");
@@ -33,8 +33,8 @@ int LandmarkGraph::add_landmark(const std::string& name, int from, const Travers
   route.target = landmarks();
   average_in(route, traversal);
   std::vector<int> only_route{routes()};
-  make_room(routes_);
-  make_room(routes_at_[idx(from)]);
+  geometry::make_room(routes_);
+  geometry::make_room(routes_at_[idx(from)]);
   const int number = add_landmark(name, landmark(from).position + traversal.displacement);
   routes_at_[idx(from)].push_back(routes());
   routes_at_[idx(number)] = std::move(only_route);
@@ -55,9 +55,9 @@ int LandmarkGraph::add_route(int source, int target) {
   route.source = source;
   route.target = target;
   const int number = routes();
-  make_room(routes_);
-  make_room(routes_at_[idx(source)]);
-  make_room(routes_at_[idx(target)]);
+  geometry::make_room(routes_);
+  geometry::make_room(routes_at_[idx(source)]);
+  geometry::make_room(routes_at_[idx(target)]);
   routes_.push_back(route);
   routes_at_[idx(source)].push_back(number);
   routes_at_[idx(target)].push_back(number);

@@ -7,12 +7,12 @@
 #include "trussmap/error.hpp"
 #include "trussmap/truss.hpp"
 
-namespace trussmap {
+namespace trussmap::map {
 LinearAdjustment adjust_linear(const LandmarkGraph& map) {
   LinearAdjustment result;
   result.map = map;
   if (map.landmarks() == 0) return result;
-  MeasuredTruss truss;
+  truss::MeasuredTruss truss;
   std::vector<Matrix2> stiffnesses;
   for (int k = 0; k < map.landmarks(); ++k) truss.add_joint(map.landmark(k).position);
   for (int number = 0; number < map.routes(); ++number) {
@@ -22,7 +22,7 @@ LinearAdjustment adjust_linear(const LandmarkGraph& map) {
     truss.add(route.source, route.target, route.displacement, stiffnesses.back());
   }
   try {
-    const MeasuredTruss::Fit fit = truss.fit();
+    const truss::MeasuredTruss::Fit fit = truss.fit();
     for (int k = 0; k < map.landmarks(); ++k) result.map.set_position(k, fit.positions[idx(k)]);
     result.chi2 = fit.chi2;
     result.dof = fit.dof;
@@ -40,4 +40,4 @@ LinearAdjustment adjust_linear(const LandmarkGraph& map) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

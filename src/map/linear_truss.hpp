@@ -14,7 +14,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map {
 
 struct LinearAdjustment {
   LandmarkGraph map;                ///< adjusted positions; routes as given
@@ -26,4 +26,4 @@ struct LinearAdjustment {
 /// Throws SolveError where a landmark is tied to nothing.
 [[nodiscard]] LinearAdjustment adjust_linear(const LandmarkGraph& map);
 
-}  // namespace trussmap
+}  // namespace trussmap::map

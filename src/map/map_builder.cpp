@@ -22,6 +22,8 @@
 #include <Eigen/LU>
 
 namespace trussmap {
+using namespace map;
+
 namespace {
 
 constexpr double kRounding = 1e-9;   // asymmetry of a covariance, as a share of its size
@@ -49,12 +51,12 @@ Traversal checked(const Traversal& leg) {
 }
 
 void check_tied(const LandmarkGraph& map) {
-  std::vector<NodePair> ties;
+  std::vector<linalg::NodePair> ties;
   ties.reserve(idx(map.routes()));
   for (int number = 0; number < map.routes(); ++number) {
     ties.push_back({map.route(number).source, map.route(number).target});
   }
-  const std::vector<int> part = connected_parts(map.landmarks(), ties);
+  const std::vector<int> part = linalg::connected_parts(map.landmarks(), ties);
   for (int k = 1; k < map.landmarks(); ++k) {
     if (part[idx(k)] == part[0]) continue;
     throw SolveError("landmark " + map.landmark(k).name +
@@ -68,7 +70,7 @@ void check_landmark(int number, int count) {
   if (count == 0)
     throw std::invalid_argument("the map has no landmark yet, expected start() before");
   throw std::invalid_argument(
-      joined("the map has no landmark number ", number, ", expected 0 to ", count - 1));
+      text::joined("the map has no landmark number ", number, ", expected 0 to ", count - 1));
 }
 
 /// All landmarks settled, and the routes' averages as they are.
@@ -97,7 +99,7 @@ BuilderMemory memory_of(const LandmarkGraph& map, const MapBuilderOptions& optio
 /// Makes the call and puts it into the journal, if there is one: both or neither.
 template <typename Call>
 auto journaled(std::vector<BuilderCall>* journal, BuilderCall entry, const Call& call) {
-  if (journal != nullptr) make_room(*journal);
+  if (journal != nullptr) geometry::make_room(*journal);
   auto result = call(entry);
   if (journal != nullptr) journal->push_back(entry);
   return result;

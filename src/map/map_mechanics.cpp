@@ -10,11 +10,11 @@
 #include <numeric>
 #include <set>
 
-namespace trussmap {
+namespace trussmap::map {
 namespace {
 
-constexpr Enough kLocal{.rounds = 2};                  // more comes at the next arrival
-constexpr Enough kWhole{.rounds = 12, .gain = 1e-11};  // a further one would gain less
+constexpr truss::Enough kLocal{.rounds = 2};                  // more comes at the next arrival
+constexpr truss::Enough kWhole{.rounds = 12, .gain = 1e-11};  // a further one would gain less
 constexpr double kNegligible = 0.1;  // of what a route yields to its own uncertainty
 constexpr int kFreeGroups = 25;      // at each scale: they cover several of the next
 constexpr int kMostMembers = 6000;   // landmarks in the groups that are free at a scale, visited
@@ -25,7 +25,7 @@ template <typename Call>
 auto solved(const Call& call) {
   try {
     return call();
-  } catch (const NotPositiveDefinite&) {
+  } catch (const linalg::NotPositiveDefinite&) {
     throw too_many_magnitudes();
   }
 }
@@ -48,7 +48,7 @@ void MapMechanics::roll_back() noexcept {
   if (others_ == 0) return;
   others_ = 0;
   for (int number = 0; number < truss_.elements(); ++number) {
-    others_ += truss_.element(number).kind == Element::Kind::bar ? 0 : 1;
+    others_ += truss_.element(number).kind == truss::Element::Kind::bar ? 0 : 1;
   }
 }
 
@@ -86,7 +86,7 @@ double MapMechanics::energy() const {
   if (sums_.empty()) return truss_.energy();
   double sum = 0.0;
   for (int number = 0; number < truss_.elements(); ++number) {
-    const Element& bar = truss_.element(number);
+    const truss::Element& bar = truss_.element(number);
     const Vector2 strain = position(bar.joints[1]) - position(bar.joints[0]) - bar.w;
     sum += 0.5 * strain.dot(bar.B * strain);
   }
@@ -114,8 +114,8 @@ void MapMechanics::move(int landmark, const Vector2& to) {
 }
 
 int MapMechanics::add_landmark(const Vector2& position, int from) {
-  make_room(from_);
-  make_room(counted_);
+  geometry::make_room(from_);
+  geometry::make_room(counted_);
   const int number = truss_.add_joint(position);
   from_.push_back(from);
   counted_.resize(idx(number) + 1, 0);
@@ -123,9 +123,9 @@ int MapMechanics::add_landmark(const Vector2& position, int from) {
   return number;
 }
 
-int MapMechanics::add_element(const Element& element) {
+int MapMechanics::add_element(const truss::Element& element) {
   const int number = truss_.add_element(element);
-  if (element.kind != Element::Kind::bar) {
+  if (element.kind != truss::Element::Kind::bar) {
     ++others_;
     settle();
   }
@@ -133,14 +133,14 @@ int MapMechanics::add_element(const Element& element) {
   return number;
 }
 
-void MapMechanics::set_element(int number, const Element& element) {
+void MapMechanics::set_element(int number, const truss::Element& element) {
   truss_.set_element(number, element);
   element_changed(number);
 }
 
 void MapMechanics::element_changed(int number) {
   equilibrium_.changed(number);
-  const Element& element = truss_.element(number);
+  const truss::Element& element = truss_.element(number);
   for (int n = 0; n < element.count(); ++n) sums_.touch(element.joints[idx(n)]);
 }
 
@@ -182,7 +182,7 @@ Matrix2 MapMechanics::flexibility_between(int i, int j) {
 }
 
 std::vector<Matrix2> MapMechanics::flexibilities() const {
-  return solved([this] { return trussmap::flexibilities(truss_); });
+  return solved([this] { return trussmap::truss::flexibilities(truss_); });
 }
 
 void MapMechanics::require_finite() const {
@@ -227,12 +227,13 @@ int MapMechanics::estimated_eta(int i, int j) const {
     std::set<int> next;
     for (const int landmark : ring) {
       for (const int number : truss_.elements_at(landmark)) {
-        const Element& one = truss_.element(number);
-        if (one.kind == Element::Kind::corner || one.kind == Element::Kind::direction) continue;
+        const truss::Element& one = truss_.element(number);
+        if (one.kind == truss::Element::Kind::corner || one.kind == truss::Element::Kind::direction)
+          continue;
         const int other = one.joints[0] == landmark ? one.joints[1] : one.joints[0];
         if (piece.contains(other)) continue;
         next.insert(other);
-        const double k = one.kind == Element::Kind::bar ? 0.5 * one.B.trace() : one.k;
+        const double k = one.kind == truss::Element::Kind::bar ? 0.5 * one.B.trace() : one.k;
         cut += k;
         stiffest = std::max(stiffest, k);
       }
@@ -253,7 +254,7 @@ int MapMechanics::relax_nearest(int i, int j) {
   const std::vector<int> near = members(i, j);
   truss_.fetch(near);
   sums_.look_round(truss_, near);
-  std::vector<FreeJoint> free;
+  std::vector<truss::FreeJoint> free;
   free.reserve(near.size());
   for (const int landmark : near) {
     if (landmark > 0) free.push_back({landmark, static_cast<int>(free.size())});
@@ -290,7 +291,7 @@ std::vector<int> MapMechanics::nearest_groups(int level, int i, int j,
 
 /// Landmark by landmark. 0: more of them than a correction may move.
 int MapMechanics::relax_members(int level, const std::vector<int>& groups) {
-  std::vector<FreeJoint> free;
+  std::vector<truss::FreeJoint> free;
   std::vector<int> members;
   int block = 0;
   for (const int group : groups) {
@@ -320,8 +321,8 @@ void MapMechanics::grow_groups() {
   try {
     for (; grouped_ < truss_.joints(); ++grouped_) groups_.add(grouped_, from_[idx(grouped_)]);
     for (; tied_ < truss_.elements(); ++tied_) {
-      const Element& one = truss_.element(tied_);
-      if (one.kind != Element::Kind::corner) groups_.tie(one.joints[0], one.joints[1]);
+      const truss::Element& one = truss_.element(tied_);
+      if (one.kind != truss::Element::Kind::corner) groups_.tie(one.joints[0], one.joints[1]);
     }
   } catch (...) {
     groups_.clear();
@@ -330,4 +331,4 @@ void MapMechanics::grow_groups() {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

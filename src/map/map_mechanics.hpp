@@ -32,7 +32,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map {
 
 /// Landmarks up to which `automatic` is `all`: a correction takes a millisecond or two there.
 inline constexpr int kMostExact = 10000;
@@ -44,7 +44,7 @@ class MapMechanics {
   void set_scope(const RefinementScope& scope) { scope_ = scope; }
 
   /// Its joints may lie where they were last looked at: see position().
-  [[nodiscard]] const ElasticTruss& truss() const { return truss_; }
+  [[nodiscard]] const truss::ElasticTruss& truss() const { return truss_; }
 
   /// Whether landmarks may have moved with their groups, unseen.
   [[nodiscard]] bool groups_move() const { return !sums_.empty(); }
@@ -77,8 +77,8 @@ class MapMechanics {
 
   /// Reached from an earlier landmark; -1: the first.
   int add_landmark(const Vector2& position, int from);
-  int add_element(const Element& element);
-  void set_element(int number, const Element& element);
+  int add_element(const truss::Element& element);
+  void set_element(int number, const truss::Element& element);
   void move(int landmark, const Vector2& to);
   /// All landmarks in the truss are where they are now: before much is moved by itself.
   void settle() noexcept;
@@ -132,10 +132,10 @@ class MapMechanics {
 
   RefinementScope scope_;
   StiffnessLaw law_;
-  ElasticTruss truss_;
+  truss::ElasticTruss truss_;
   bool at_rest_ = false;  ///< all came to equilibrium since begin()
-  Relaxation relaxation_;
-  Equilibrium equilibrium_;
+  truss::Relaxation relaxation_;
+  truss::Equilibrium equilibrium_;
   NearestLandmarks index_;
   std::vector<int> from_;  ///< per landmark
   ScaleGroups groups_;     ///< of the first grouped_ landmarks and tied_ elements
@@ -147,4 +147,4 @@ class MapMechanics {
   std::vector<char> counted_;  ///< per landmark, of moves()
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map {
 namespace {
 
 constexpr std::string_view kFirstLine = "trussmap map builder 1";
@@ -24,7 +24,7 @@ constexpr std::string_view kNull = "-";
 constexpr std::string_view kHexDigits = "0123456789abcdef";
 
 std::string check_sum(std::string_view text) {
-  FnvHash hash;
+  text::FnvHash hash;
   hash.take(text);
   return hash.digits();
 }
@@ -56,12 +56,14 @@ std::vector<std::string> names_of(const MemoryTable& table) {
 
 // ---------------------------------------- writing
 
-class TextRow final : public RowWriter {
+class TextRow final : public text::RowWriter {
  public:
   explicit TextRow(std::size_t columns) : fields_(columns, std::string(kNull)) {}
 
-  using RowWriter::bind;
-  TextRow& bind(int column, double value) override { return put(column, shortest_text(value)); }
+  using text::RowWriter::bind;
+  TextRow& bind(int column, double value) override {
+    return put(column, text::shortest_text(value));
+  }
   TextRow& bind(int column, std::int64_t value) override {
     return put(column, std::to_string(value));
   }
@@ -84,7 +86,7 @@ class TextRow final : public RowWriter {
 template <typename Put>
 void append_table(std::string& text, const MemoryTable& table, std::ptrdiff_t rows,
                   const Put& put) {
-  text += joined(table.name, " ", rows, ": ", table.columns, "\n");
+  text += text::joined(table.name, " ", rows, ": ", table.columns, "\n");
   const std::size_t columns = names_of(table).size();
   for (std::ptrdiff_t k = 0; k < rows; ++k) {
     TextRow row(columns);
@@ -133,7 +135,7 @@ bool parsed(std::string_view field, Number& number) {
   return failed == std::errc() && end == field.data() + field.size();
 }
 
-class FieldRow final : public RowReader {
+class FieldRow final : public text::RowReader {
  public:
   FieldRow(const Lines& lines, const std::vector<std::string>& names)
       : lines_(lines), names_(names) {}
@@ -146,7 +148,7 @@ class FieldRow final : public RowReader {
       begin = end + 1;
     }
     if (fields_.size() != names_.size()) {
-      lines_.refuse(joined("has ", fields_.size(), " fields, expected ", names_.size()));
+      lines_.refuse(text::joined("has ", fields_.size(), " fields, expected ", names_.size()));
     }
   }
 
@@ -181,8 +183,8 @@ class FieldRow final : public RowReader {
 
  private:
   [[noreturn]] void refuse(int column, const char* expected) const {
-    lines_.refuse(
-        joined(names_[idx(column)], " is \"", fields_[idx(column)], "\", expected ", expected));
+    lines_.refuse(text::joined(names_[idx(column)], " is \"", fields_[idx(column)], "\", expected ",
+                               expected));
   }
 
   const Lines& lines_;
@@ -203,12 +205,13 @@ class TextTables final : public MemoryTables {
     return rows_;
   }
 
-  void each(const MemoryTable& table, const std::function<void(const RowReader&)>& visit) override {
+  void each(const MemoryTable& table,
+            const std::function<void(const text::RowReader&)>& visit) override {
     const int count = rows(table);
     const std::vector<std::string> names = names_of(table);
     FieldRow row(lines_, names);
     for (int k = 0; k < count; ++k) {
-      row.take(lines_.next(joined("row ", k + 1, " of the ", count, " of ", table.name)));
+      row.take(lines_.next(text::joined("row ", k + 1, " of the ", count, " of ", table.name)));
       try {
         visit(row);
       } catch (const std::invalid_argument& error) {
@@ -219,8 +222,8 @@ class TextTables final : public MemoryTables {
 
  private:
   [[nodiscard]] int head(const MemoryTable& table) {
-    const std::string begin = joined(table.name, " ");
-    const std::string end = joined(": ", table.columns);
+    const std::string begin = text::joined(table.name, " ");
+    const std::string end = text::joined(": ", table.columns);
     const std::string expected = begin + "ROWS" + end;
     const std::string_view line = lines_.next("\"" + expected + "\"");
     int rows = -1;
@@ -229,7 +232,7 @@ class TextTables final : public MemoryTables {
     if (!framed ||
         !parsed(line.substr(begin.size(), line.size() - begin.size() - end.size()), rows) ||
         rows < 0) {
-      lines_.refuse(joined("is \"", line, "\", expected \"", expected, "\""));
+      lines_.refuse(text::joined("is \"", line, "\", expected \"", expected, "\""));
     }
     return rows;
   }
@@ -242,14 +245,14 @@ class TextTables final : public MemoryTables {
 }  // namespace
 
 std::string format_memory(const BuilderMemory& m, const MapBuilderOptions& options) {
-  std::string text = joined(kFirstLine, "\n");
+  std::string text = text::joined(kFirstLine, "\n");
   const auto append = [&](const MemoryTable& table, std::ptrdiff_t rows, auto put) {
-    append_table(text, table, rows, [&](RowWriter& row, int k) { put(row, m, k); });
+    append_table(text, table, rows, [&](text::RowWriter& row, int k) { put(row, m, k); });
   };
   append(kOptionsTable, 1,
-         [&](RowWriter& row, const BuilderMemory&, int) { put_options(row, options); });
+         [&](text::RowWriter& row, const BuilderMemory&, int) { put_options(row, options); });
   append(kLandmarksTable, m.graph.landmarks(), put_landmark);
-  append(kRoutesTable, m.graph.routes(), [&](RowWriter& row, const BuilderMemory&, int k) {
+  append(kRoutesTable, m.graph.routes(), [&](text::RowWriter& row, const BuilderMemory&, int k) {
     put_route(row, m, k, weighs_each(options));
   });
   append(kCornersTable, std::ssize(m.corners), put_corner);
@@ -258,24 +261,25 @@ std::string format_memory(const BuilderMemory& m, const MapBuilderOptions& optio
   append(kMisfitsTable, std::ssize(m.gate.remembered()), put_misfit);
   append(kLeftOutTable, std::ssize(m.left_out), put_left_out);
   append(kStateTable, 1,
-         [](RowWriter& row, const BuilderMemory& memory, int) { put_state(row, memory); });
+         [](text::RowWriter& row, const BuilderMemory& memory, int) { put_state(row, memory); });
   const std::string sum = check_sum(text);
-  return text + joined(kEnd, sum, "\n");
+  return text + text::joined(kEnd, sum, "\n");
 }
 
 KeptMemory parse_memory(const std::string& text, const std::string& file) {
   Lines lines(text, file);
-  const std::string expected = joined("\"", kFirstLine, "\"");
+  const std::string expected = text::joined("\"", kFirstLine, "\"");
   const std::string_view first = lines.next(expected);
   if (first != kFirstLine) {
-    lines.refuse(first.starts_with(kFirstWords)
-                     ? joined("is of version ", first.substr(kFirstWords.size()), ", expected 1")
-                     : "is no map builder's file, expected " + expected);
+    lines.refuse(
+        first.starts_with(kFirstWords)
+            ? text::joined("is of version ", first.substr(kFirstWords.size()), ", expected 1")
+            : "is no map builder's file, expected " + expected);
   }
   TextTables tables(lines);
   MapBuilderOptions options;
   if (tables.rows(kOptionsTable) != 1) lines.refuse("other than one row of options, expected 1");
-  tables.each(kOptionsTable, [&](const RowReader& row) { options = options_in(row); });
+  tables.each(kOptionsTable, [&](const text::RowReader& row) { options = options_in(row); });
   KeptMemory kept{options, BuilderMemory(options.gate)};
   try {
     kept.memory = load_memory(tables, options);
@@ -283,11 +287,12 @@ KeptMemory parse_memory(const std::string& text, const std::string& file) {
     lines.refuse(std::string("is damaged: it has ") + error.what());
   }
   const std::string_view end = lines.next("\"end\" and the file's check sum");
-  const std::string sum = joined(kEnd, check_sum(lines.before()));
+  const std::string sum = text::joined(kEnd, check_sum(lines.before()));
   if (end != sum)
-    lines.refuse(joined("is \"", end, "\", expected \"", sum, "\": what stands above was changed"));
+    lines.refuse(
+        text::joined("is \"", end, "\", expected \"", sum, "\": what stands above was changed"));
   if (!lines.done()) lines.refuse("is not the last line, expected nothing behind it");
   return kept;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -19,7 +19,7 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::map {
 
 [[nodiscard]] std::string format_memory(const BuilderMemory& memory,
                                         const MapBuilderOptions& options);
@@ -33,4 +33,4 @@ struct KeptMemory {
 /// byte.
 [[nodiscard]] KeptMemory parse_memory(const std::string& text, const std::string& file);
 
-}  // namespace trussmap
+}  // namespace trussmap::map

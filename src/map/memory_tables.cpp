@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map {
 namespace {
 
 /// Of a covariance of (x, y, turn), in the order in which it is kept.
@@ -50,20 +50,21 @@ auto named(const Values& values, const std::string& name, const char* what) {
     if (word_for(value) == name) return value;
     all += (all.empty() ? "" : ", ") + word_for(value);
   }
-  refuse(joined(what, " that is unknown, expected one of ", all));
+  refuse(text::joined(what, " that is unknown, expected one of ", all));
 }
 
-double finite(const RowReader& row, int column, const char* what) {
+double finite(const text::RowReader& row, int column, const char* what) {
   const double value = row.is_null(column) ? std::nan("") : row.real(column);
-  if (!std::isfinite(value)) refuse(joined(what, " that is no number, expected a finite one"));
+  if (!std::isfinite(value))
+    refuse(text::joined(what, " that is no number, expected a finite one"));
   return value;
 }
 
-Vector2 vector_at(const RowReader& row, int column, const char* what) {
+Vector2 vector_at(const text::RowReader& row, int column, const char* what) {
   return {finite(row, column, what), finite(row, column + 1, what)};
 }
 
-Matrix2 symmetric_at(const RowReader& row, int column, const char* what) {
+Matrix2 symmetric_at(const text::RowReader& row, int column, const char* what) {
   Matrix2 C;
   C(0, 0) = finite(row, column, what);
   C(0, 1) = C(1, 0) = finite(row, column + 1, what);
@@ -71,63 +72,63 @@ Matrix2 symmetric_at(const RowReader& row, int column, const char* what) {
   return C;
 }
 
-Matrix2 matrix_at(const RowReader& row, int column, const char* what) {
+Matrix2 matrix_at(const text::RowReader& row, int column, const char* what) {
   const Matrix2 C = symmetric_at(row, column, what);
   if (!(C(0, 0) > 0.0) || !(C.determinant() > 0.0)) {
-    refuse(joined(what, " whose matrix is not positive definite"));
+    refuse(text::joined(what, " whose matrix is not positive definite"));
   }
   return C;
 }
 
-std::int64_t integer_at(const RowReader& row, int column, const char* what) {
-  if (row.is_null(column)) refuse(joined(what, " that is no number, expected a whole one"));
+std::int64_t integer_at(const text::RowReader& row, int column, const char* what) {
+  if (row.is_null(column)) refuse(text::joined(what, " that is no number, expected a whole one"));
   return row.integer(column);
 }
 
 /// A number from `lowest` to `count` - 1.
-int number_at(const RowReader& row, int column, int lowest, int count, const char* what) {
+int number_at(const text::RowReader& row, int column, int lowest, int count, const char* what) {
   const std::int64_t number = integer_at(row, column, what);
   if (number < lowest || number >= count) {
-    refuse(
-        joined(what, " of ", number, ", which is not there, expected ", lowest, " to ", count - 1));
+    refuse(text::joined(what, " of ", number, ", which is not there, expected ", lowest, " to ",
+                        count - 1));
   }
   return static_cast<int>(number);
 }
 
-void check_place(const RowReader& row, std::ptrdiff_t place, const char* what) {
+void check_place(const text::RowReader& row, std::ptrdiff_t place, const char* what) {
   if (integer_at(row, 0, what) != place) {
-    refuse(joined(what, " that is misnumbered, expected ", place));
+    refuse(text::joined(what, " that is misnumbered, expected ", place));
   }
 }
 
 /// How often something was measured.
-int count_at(const RowReader& row, int column, int least, const char* what) {
+int count_at(const text::RowReader& row, int column, int least, const char* what) {
   constexpr std::int64_t kMost = 1'000'000'000;
   const std::int64_t count = integer_at(row, column, what);
   if (count < least || count > kMost) {
-    refuse(joined(what, " without traversals, expected ", least, " or more"));
+    refuse(text::joined(what, " without traversals, expected ", least, " or more"));
   }
   return static_cast<int>(count);
 }
 
-bool flag_at(const RowReader& row, int column, const char* what) {
+bool flag_at(const text::RowReader& row, int column, const char* what) {
   const std::int64_t flag = integer_at(row, column, what);
-  if (flag != 0 && flag != 1) refuse(joined(what, " of ", flag, ", expected 0 or 1"));
+  if (flag != 0 && flag != 1) refuse(text::joined(what, " of ", flag, ", expected 0 or 1"));
   return flag == 1;
 }
 
-Average average_at(const RowReader& row, int column, int least, const char* what) {
+Average average_at(const text::RowReader& row, int column, int least, const char* what) {
   Average average;
   average.count = count_at(row, column, least, what);
   average.mean = finite(row, column + 1, what);
   average.variance = finite(row, column + 2, what);
   if (average.count > 0 && !(average.variance > 0.0)) {
-    refuse(joined(what, " without variance, expected one above 0"));
+    refuse(text::joined(what, " without variance, expected one above 0"));
   }
   return average;
 }
 
-void put_average(RowWriter& row, int column, const Average& average) {
+void put_average(text::RowWriter& row, int column, const Average& average) {
   row.bind(column, average.count).bind(column + 1, average.mean);
   row.bind(column + 2, average.variance);
 }
@@ -170,8 +171,8 @@ class Loading {
   void load_chain();
   void load_gate();
   void load_state();
-  void take_state(const RowReader& row);
-  [[nodiscard]] int landmark_at(const RowReader& row, int column, const char* what) const {
+  void take_state(const text::RowReader& row);
+  [[nodiscard]] int landmark_at(const text::RowReader& row, int column, const char* what) const {
     return number_at(row, column, 0, memory_.graph.landmarks(), what);
   }
 
@@ -184,7 +185,7 @@ class Loading {
 void Loading::load_landmarks() {
   LandmarkGraph& graph = memory_.graph;
   const int count = tables_.rows(kLandmarksTable);
-  tables_.each(kLandmarksTable, [&](const RowReader& row) {
+  tables_.each(kLandmarksTable, [&](const text::RowReader& row) {
     check_place(row, graph.landmarks(), "a landmark");
     graph.add_landmark(row.text(1), vector_at(row, 2, "a place"));
     roots_.push_back(number_at(row, 4, -1, count, "a loop"));
@@ -196,7 +197,7 @@ void Loading::load_landmarks() {
 
 void Loading::load_routes() {
   LandmarkGraph& graph = memory_.graph;
-  tables_.each(kRoutesTable, [&](const RowReader& row) {
+  tables_.each(kRoutesTable, [&](const text::RowReader& row) {
     Route route;
     route.source = landmark_at(row, 1, "a route");
     route.target = landmark_at(row, 2, "a route");
@@ -216,7 +217,7 @@ void Loading::load_routes() {
 }
 
 void Loading::load_corners() {
-  tables_.each(kCornersTable, [&](const RowReader& row) {
+  tables_.each(kCornersTable, [&](const text::RowReader& row) {
     check_place(row, std::ssize(memory_.corners), "a corner");
     CornerAverage one;
     one.i = landmark_at(row, 1, "a corner");
@@ -235,7 +236,7 @@ void Loading::load_reckoned() {
   const int routes = memory_.graph.routes();
   const int corners = static_cast<int>(memory_.corners.size());
   std::vector<bool> taken(idx(routes), false);
-  tables_.each(kReckonedTable, [&](const RowReader& row) {
+  tables_.each(kReckonedTable, [&](const text::RowReader& row) {
     check_place(row, std::ssize(memory_.reckoned), "a length");
     ReckonedRoute one;
     one.route = number_at(row, 1, 0, routes, "a length");
@@ -257,7 +258,7 @@ void Loading::load_reckoned() {
 
 void Loading::load_chain() {
   std::vector<int> chain;
-  tables_.each(kChainTable, [&](const RowReader& row) {
+  tables_.each(kChainTable, [&](const text::RowReader& row) {
     const int landmark = landmark_at(row, 1, "a chain");
     if (!chain.empty() && !memory_.graph.route_between(chain.back(), landmark)) {
       refuse("a chain along a route that is not there");
@@ -268,9 +269,10 @@ void Loading::load_chain() {
 }
 
 void Loading::load_gate() {
-  tables_.each(kMisfitsTable,
-               [&](const RowReader& row) { memory_.gate.remember(finite(row, 1, "a misfit")); });
-  tables_.each(kLeftOutTable, [&](const RowReader& row) {
+  tables_.each(kMisfitsTable, [&](const text::RowReader& row) {
+    memory_.gate.remember(finite(row, 1, "a misfit"));
+  });
+  tables_.each(kLeftOutTable, [&](const text::RowReader& row) {
     LeftOutArrival one;
     one.from = memory_.graph.landmark(landmark_at(row, 1, "a leg")).name;
     one.to = memory_.graph.landmark(landmark_at(row, 2, "a leg")).name;
@@ -283,7 +285,7 @@ void Loading::load_gate() {
 
 void Loading::load_state() {
   bool there = false;
-  tables_.each(kStateTable, [&](const RowReader& row) {
+  tables_.each(kStateTable, [&](const text::RowReader& row) {
     if (there) refuse("two states, expected one");
     there = true;
     take_state(row);
@@ -291,7 +293,7 @@ void Loading::load_state() {
   if (!there) refuse("no state, expected one");
 }
 
-void Loading::take_state(const RowReader& row) {
+void Loading::take_state(const text::RowReader& row) {
   const int count = memory_.graph.landmarks();
   memory_.here = number_at(row, 0, -1, count, "a state");
   memory_.said = number_at(row, 1, -1, count, "a state");
@@ -341,7 +343,7 @@ BuilderMemory load_memory(MemoryTables& tables, const MapBuilderOptions& options
   return Loading(tables, options).all();
 }
 
-MapBuilderOptions options_in(const RowReader& row) {
+MapBuilderOptions options_in(const text::RowReader& row) {
   MapBuilderOptions options;
   options.method = named(kMethods, row.text(0), "a method");
   options.scope.kind = named(kScopes, row.text(1), "a scope");
@@ -355,7 +357,7 @@ MapBuilderOptions options_in(const RowReader& row) {
   return options;
 }
 
-void put_options(RowWriter& row, const MapBuilderOptions& options) {
+void put_options(text::RowWriter& row, const MapBuilderOptions& options) {
   row.bind(0, word_for(options.method)).bind(1, word_for(options.scope.kind));
   row.bind(2, options.scope.eta).bind(3, options.scope.groups ? 1 : 0);
   row.bind(4, word_for(options.law)).bind(5, options.refine ? 1 : 0);
@@ -367,13 +369,13 @@ int root_of(const BuilderMemory& memory, int landmark) {
   return idx(landmark) < roots.size() ? roots[idx(landmark)] : -1;
 }
 
-void put_landmark(RowWriter& row, const BuilderMemory& memory, int number) {
+void put_landmark(text::RowWriter& row, const BuilderMemory& memory, int number) {
   const Landmark& landmark = memory.graph.landmark(number);
   row.bind(0, number).bind(1, landmark.name).bind(2, landmark.position);
   row.bind(4, root_of(memory, number));
 }
 
-void put_route(RowWriter& row, const BuilderMemory& memory, int number, bool weighed) {
+void put_route(text::RowWriter& row, const BuilderMemory& memory, int number, bool weighed) {
   const Route& route = memory.graph.route(number);
   row.bind(0, number).bind(1, route.source).bind(2, route.target).bind(3, route.traversals);
   row.bind(4, route.stretch).bind(5, route.orientation).bind(6, route.displacement);
@@ -383,13 +385,13 @@ void put_route(RowWriter& row, const BuilderMemory& memory, int number, bool wei
   row.bind(14, memory.weighed[idx(number)].mean);
 }
 
-void put_corner(RowWriter& row, const BuilderMemory& memory, int number) {
+void put_corner(text::RowWriter& row, const BuilderMemory& memory, int number) {
   const CornerAverage& one = memory.corners[idx(number)];
   row.bind(0, number).bind(1, one.i).bind(2, one.j).bind(3, one.k);
   put_average(row, 4, one.angle);
 }
 
-void put_reckoned(RowWriter& row, const BuilderMemory& memory, int number) {
+void put_reckoned(text::RowWriter& row, const BuilderMemory& memory, int number) {
   const ReckonedRoute& one = memory.reckoned[idx(number)];
   row.bind(0, number).bind(1, one.route);
   put_average(row, 2, one.length);
@@ -398,22 +400,22 @@ void put_reckoned(RowWriter& row, const BuilderMemory& memory, int number) {
   row.bind(11, one.bar.orientation).bind(12, one.bar.displacement).bind(14, one.bar.covariance);
 }
 
-void put_link(RowWriter& row, const BuilderMemory& memory, int place) {
+void put_link(text::RowWriter& row, const BuilderMemory& memory, int place) {
   row.bind(0, place).bind(1, memory.chain.landmarks()[idx(place)]);
 }
 
-void put_misfit(RowWriter& row, const BuilderMemory& memory, int place) {
+void put_misfit(text::RowWriter& row, const BuilderMemory& memory, int place) {
   row.bind(0, place).bind(1, memory.gate.remembered()[idx(place)]);
 }
 
-void put_left_out(RowWriter& row, const BuilderMemory& memory, int place) {
+void put_left_out(text::RowWriter& row, const BuilderMemory& memory, int place) {
   const LeftOutArrival& one = memory.left_out[idx(place)];
   row.bind(0, place).bind(1, *memory.graph.find(one.from)).bind(2, *memory.graph.find(one.to));
   row.bind(3, one.leg.displacement).bind(5, one.leg.covariance).bind(8, one.sds);
   row.bind(9, one.own_axes ? 1 : 0);
 }
 
-void put_state(RowWriter& row, const BuilderMemory& memory) {
+void put_state(text::RowWriter& row, const BuilderMemory& memory) {
   row.bind(0, memory.here).bind(1, memory.said);
   if (memory.carried) {
     row.bind(2, memory.carried->displacement).bind(4, memory.carried->covariance);
@@ -439,4 +441,4 @@ void put_state(RowWriter& row, const BuilderMemory& memory) {
   if (reading) row.bind(37, reading->heading).bind(38, reading->variance);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::map {
 
 struct MemoryTable {
   const char* name;
@@ -51,7 +51,7 @@ class MemoryTables {
  public:
   [[nodiscard]] virtual int rows(const MemoryTable& table) = 0;
   virtual void each(const MemoryTable& table,
-                    const std::function<void(const RowReader&)>& visit) = 0;
+                    const std::function<void(const text::RowReader&)>& visit) = 0;
 
  protected:
   ~MemoryTables() = default;
@@ -60,20 +60,20 @@ class MemoryTables {
 /// Throws std::invalid_argument, as what a thing is damaged that has it ("a route without ..."),
 /// where the rows cannot be a builder's memory.
 [[nodiscard]] BuilderMemory load_memory(MemoryTables& tables, const MapBuilderOptions& options);
-[[nodiscard]] MapBuilderOptions options_in(const RowReader& row);
+[[nodiscard]] MapBuilderOptions options_in(const text::RowReader& row);
 
-void put_options(RowWriter& row, const MapBuilderOptions& options);
-void put_landmark(RowWriter& row, const BuilderMemory& memory, int number);
+void put_options(text::RowWriter& row, const MapBuilderOptions& options);
+void put_landmark(text::RowWriter& row, const BuilderMemory& memory, int number);
 /// `weighed`: with weights (weighs_each()).
-void put_route(RowWriter& row, const BuilderMemory& memory, int number, bool weighed);
-void put_corner(RowWriter& row, const BuilderMemory& memory, int number);
-void put_reckoned(RowWriter& row, const BuilderMemory& memory, int number);
-void put_link(RowWriter& row, const BuilderMemory& memory, int place);
-void put_misfit(RowWriter& row, const BuilderMemory& memory, int place);
-void put_left_out(RowWriter& row, const BuilderMemory& memory, int place);
-void put_state(RowWriter& row, const BuilderMemory& memory);
+void put_route(text::RowWriter& row, const BuilderMemory& memory, int number, bool weighed);
+void put_corner(text::RowWriter& row, const BuilderMemory& memory, int number);
+void put_reckoned(text::RowWriter& row, const BuilderMemory& memory, int number);
+void put_link(text::RowWriter& row, const BuilderMemory& memory, int place);
+void put_misfit(text::RowWriter& row, const BuilderMemory& memory, int place);
+void put_left_out(text::RowWriter& row, const BuilderMemory& memory, int place);
+void put_state(text::RowWriter& row, const BuilderMemory& memory);
 
 /// What the landmark's loop hangs on, -1: nothing.
 [[nodiscard]] int root_of(const BuilderMemory& memory, int landmark);
 
-}  // namespace trussmap
+}  // namespace trussmap::map

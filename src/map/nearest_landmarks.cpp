@@ -11,7 +11,7 @@
 #include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>
 
-namespace trussmap {
+namespace trussmap::map {
 namespace {
 
 namespace bg = boost::geometry;
@@ -122,4 +122,4 @@ std::vector<int> NearestLandmarks::nearest(const std::vector<Vector2>& positions
   return landmarks;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

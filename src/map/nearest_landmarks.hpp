@@ -15,7 +15,7 @@
 #include <memory>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map {
 
 class NearestLandmarks {
  public:
@@ -38,4 +38,4 @@ class NearestLandmarks {
   std::unique_ptr<Index> index_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::map

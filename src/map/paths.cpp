@@ -14,6 +14,8 @@
 #include <boost/range/iterator_range.hpp>
 
 namespace trussmap {
+using namespace map;
+
 namespace {
 
 /// Of a route or a chain of them: the number of routes decides between chains of the same weight.

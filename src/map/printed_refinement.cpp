@@ -13,7 +13,7 @@
 #include <optional>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::map {
 namespace {
 
 /// Number of a landmark's place among ascending ones, -1 if it is not among them.
@@ -60,13 +60,14 @@ Piece piece_of(const LandmarkGraph& map, std::vector<int> members) {
 /// Of the members, those that routes among them tie to landmark i.
 Piece connected_to(const LandmarkGraph& map, int i, std::vector<int> members) {
   Piece piece = piece_of(map, std::move(members));
-  std::vector<NodePair> pairs;
+  std::vector<linalg::NodePair> pairs;
   for (const int number : piece.routes) {
     const Route& route = map.route(number);
     pairs.push_back(
         {place_in(piece.landmarks, route.source), place_in(piece.landmarks, route.target)});
   }
-  const std::vector<int> part = connected_parts(static_cast<int>(piece.landmarks.size()), pairs);
+  const std::vector<int> part =
+      linalg::connected_parts(static_cast<int>(piece.landmarks.size()), pairs);
   const int mine = part[idx(place_in(piece.landmarks, i))];
   std::vector<int> tied;
   for (std::size_t k = 0; k < part.size(); ++k) {
@@ -131,4 +132,4 @@ Moves printed_refinement(const LandmarkGraph& map, int number, std::vector<int> 
   return moves;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

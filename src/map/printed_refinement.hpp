@@ -15,7 +15,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map {
 
 /// Displacements of some landmarks (ascending), not yet made.
 struct Moves {
@@ -35,4 +35,4 @@ struct Moves {
 [[nodiscard]] Moves printed_refinement(const LandmarkGraph& map, int route,
                                        std::vector<int> members);
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::map {
 
 Chord chord_of(const LandmarkOffset& from, const Motion& motion, const LandmarkOffset& to) {
   const Pose& end = motion.displacement;
@@ -76,4 +76,4 @@ double variance_of(const SharedAngle& angle, const Matrix2& covariance_offset) {
   return angle.variance + angle.by_offset.dot(covariance_offset * angle.by_offset);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

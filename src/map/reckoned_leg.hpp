@@ -18,7 +18,7 @@
 #include "trussmap/landmark_map.hpp"
 #include "trussmap/planar.hpp"
 
-namespace trussmap {
+namespace trussmap::map {
 
 struct SharedAngle {
   double value = 0.0;                   ///< rad
@@ -68,4 +68,4 @@ struct MeasuredAngle {
 /// The variance of such an angle by itself.
 [[nodiscard]] double variance_of(const SharedAngle& angle, const Matrix2& covariance_offset);
 
-}  // namespace trussmap
+}  // namespace trussmap::map

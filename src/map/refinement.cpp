@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "map/refinement.hpp"
 
-namespace trussmap {
+namespace trussmap::map {
 
 RefinementLoads refinement_loads(const Vector2& present, const Vector2& target,
                                  const Matrix2& stiffness, const std::optional<Matrix2>& adjacent_i,
@@ -21,4 +21,4 @@ SolveError too_many_magnitudes() {
   return SolveError("the covariances of the map's traversals span too many magnitudes");
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

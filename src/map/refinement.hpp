@@ -27,7 +27,7 @@
 
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::map {
 
 struct RefinementLoads {
   Vector2 desired_i = Vector2::Zero();  ///< m
@@ -46,4 +46,4 @@ struct RefinementLoads {
 /// A correction that came out as no number.
 [[nodiscard]] SolveError too_many_magnitudes();
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::map {
 namespace {
 
 int at_or_none(const std::vector<int>& groups, int member) {
@@ -106,4 +106,4 @@ std::vector<int> ScaleGroups::nearest(int level, int a, int b, int count,
   return found;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -16,7 +16,7 @@
 #include <functional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map {
 
 class ScaleGroups {
  public:
@@ -62,4 +62,4 @@ class ScaleGroups {
   std::vector<Level> levels_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::map

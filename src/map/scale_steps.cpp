@@ -11,7 +11,7 @@
 #include <queue>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::map {
 namespace {
 
 constexpr double kUnheld = 1e-12;  // share of its stiffness that an unknown keeps when held
@@ -38,7 +38,7 @@ double least_distance(const Affine& frame, const Vector2& low, const Vector2& hi
 }
 
 /// A block of the system, on its diagonal or below.
-void add_block(BandMatrix& K, int row, int column, const Stiffness3& B) {
+void add_block(linalg::BandMatrix& K, int row, int column, const Stiffness3& B) {
   K.add(row, column, B[0]);
   K.add(row + 1, column, B[1]);
   K.add(row + 1, column + 1, B[2]);
@@ -46,7 +46,7 @@ void add_block(BandMatrix& K, int row, int column, const Stiffness3& B) {
 }
 
 /// A group's own block: moments of its places, or of differences of them.
-void add_own(BandMatrix& K, int rank, const std::array<Stiffness3, 3>& second) {
+void add_own(linalg::BandMatrix& K, int rank, const std::array<Stiffness3, 3>& second) {
   const int row = kUnknowns * rank;
   add_block(K, row + 2, row + 2, second[0]);
   add_block(K, row + 4, row + 2, second[1]);
@@ -54,7 +54,7 @@ void add_own(BandMatrix& K, int rank, const std::array<Stiffness3, 3>& second) {
 }
 
 /// The same of one end of a tie, with how the group is moved.
-void add_end(BandMatrix& K, int rank, const Stiffness3& zeroth,
+void add_end(linalg::BandMatrix& K, int rank, const Stiffness3& zeroth,
              const std::array<Stiffness3, 2>& first, const std::array<Stiffness3, 3>& second) {
   const int row = kUnknowns * rank;
   add_block(K, row, row, zeroth);
@@ -64,7 +64,7 @@ void add_end(BandMatrix& K, int rank, const Stiffness3& zeroth,
 }
 
 /// Block of two free groups, minus the moments of both.
-void add_between(BandMatrix& K, int rank_a, int rank_b, const TieSums& sums) {
+void add_between(linalg::BandMatrix& K, int rank_a, int rank_b, const TieSums& sums) {
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
       const Stiffness3& B = i == 0 ? (k == 0 ? sums.n : sums.b[idx(k - 1)])
@@ -123,7 +123,7 @@ ScaleSums::Free ScaleSums::free_groups(int level, const std::vector<int>& groups
     const Group& one = level_at(level).groups[idx(group)];
     const Affine at = frame_of(level, group);
     const Matrix2 spread = at.L * one.spread * at.L.transpose() / std::max(one.landmarks, 1);
-    const PlanarModes modes = planar_modes(spread);
+    const linalg::PlanarModes modes = linalg::planar_modes(spread);
     const Vector2 sd = modes.eigenvalues.cwiseMax(0.0).cwiseSqrt();  // the larger one last
     Matrix2 axes = Matrix2::Zero();
     if (sd[1] > 0.0) axes.row(0) = modes.eigenvectors.col(1).transpose() / sd[1];
@@ -136,7 +136,8 @@ ScaleSums::Free ScaleSums::free_groups(int level, const std::vector<int>& groups
   return free;
 }
 
-double ScaleSums::relax(int level, const std::vector<int>& groups, const ElasticTruss& truss) {
+double ScaleSums::relax(int level, const std::vector<int>& groups,
+                        const truss::ElasticTruss& truss) {
   if (groups.empty()) return 0.0;
   held_ = shift_by(truss.position(0));
   const Level& at = level_at(level);
@@ -169,7 +170,7 @@ void ScaleSums::order(const Level& level, Free& free) const {
   for (const Vector2& at : free.centre) mean += at / static_cast<double>(free.centre.size());
   Matrix2 spread = Matrix2::Zero();
   for (const Vector2& at : free.centre) spread += (at - mean) * (at - mean).transpose();
-  const Vector2 axis = planar_modes(spread).eigenvectors.col(1);
+  const Vector2 axis = linalg::planar_modes(spread).eigenvectors.col(1);
   std::vector<std::pair<double, int>> along;
   for (std::size_t n = 0; n < free.centre.size(); ++n) {
     along.emplace_back(axis.dot(free.centre[n] - mean), static_cast<int>(n));
@@ -318,7 +319,8 @@ class Nearest {
 
 }  // namespace
 
-std::vector<int> ScaleSums::nearest(const ElasticTruss& truss, const Vector2& to, int count) const {
+std::vector<int> ScaleSums::nearest(const truss::ElasticTruss& truss, const Vector2& to,
+                                    int count) const {
   Nearest nearest(to, idx(count));
   std::priority_queue<Reached> next;
   const auto reach = [&](int level, int group, const Affine& outside) {
@@ -357,4 +359,4 @@ std::vector<int> ScaleSums::nearest(const ElasticTruss& truss, const Vector2& to
   return nearest.landmarks();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::map {
 
 void ScaleSums::clear() noexcept {
   levels_.clear();
@@ -31,7 +31,7 @@ Affine ScaleSums::frame_of(int level, int group) const {
 }
 
 void ScaleSums::set_frame(int level, int group, const Affine& T) {
-  make_room(changes_);
+  geometry::make_room(changes_);
   Frame& frame = level_at(level).frames[idx(group)];
   changes_.push_back({level, group, frame.T});
   frame.T = T;
@@ -51,7 +51,7 @@ void ScaleSums::roll_back() noexcept {
   begin();
 }
 
-Vector2 ScaleSums::position(const ElasticTruss& truss, int landmark) const {
+Vector2 ScaleSums::position(const truss::ElasticTruss& truss, int landmark) const {
   const Vector2& stored = truss.position(landmark);
   int group = home(landmark);
   if (group < 0 || seen_[idx(group)].when == now_) return stored;
@@ -64,7 +64,7 @@ Vector2 ScaleSums::position(const ElasticTruss& truss, int landmark) const {
   return place;
 }
 
-void ScaleSums::look(ElasticTruss& truss, int landmark) noexcept {
+void ScaleSums::look(truss::ElasticTruss& truss, int landmark) noexcept {
   const int group = home(landmark);
   if (group < 0) return;
   Seen& seen = seen_[idx(group)];
@@ -76,18 +76,18 @@ void ScaleSums::look(ElasticTruss& truss, int landmark) noexcept {
   seen = {at, inverse_of(at), now_};
 }
 
-void ScaleSums::look_round(ElasticTruss& truss, const std::vector<int>& landmarks) noexcept {
+void ScaleSums::look_round(truss::ElasticTruss& truss, const std::vector<int>& landmarks) noexcept {
   if (empty()) return;
   for (const int landmark : landmarks) {
     look(truss, landmark);
     for (const int number : truss.elements_at(landmark)) {
-      const Element& bar = truss.element(number);
+      const truss::Element& bar = truss.element(number);
       look(truss, bar.joints[0] == landmark ? bar.joints[1] : bar.joints[0]);
     }
   }
 }
 
-void ScaleSums::settle(ElasticTruss& truss) noexcept {
+void ScaleSums::settle(truss::ElasticTruss& truss) noexcept {
   for (int landmark = 0; landmark < static_cast<int>(home_.size()); ++landmark) {
     look(truss, landmark);
   }
@@ -109,7 +109,7 @@ void ScaleSums::touch_group(int level, int group) noexcept {
 
 // ---------------------------------------- what is new
 
-void ScaleSums::follow(const ScaleGroups& groups, ElasticTruss& truss) {
+void ScaleSums::follow(const ScaleGroups& groups, truss::ElasticTruss& truss) {
   while (coarsest() < groups.levels() - 1) levels_.emplace_back();
   held_ = shift_by(truss.position(0));
   for (int level = coarsest(); level >= kFinest; --level) follow_level(level, groups, truss);
@@ -117,7 +117,8 @@ void ScaleSums::follow(const ScaleGroups& groups, ElasticTruss& truss) {
 }
 
 /// Parents come before their members. What was coarsest has parents from now on.
-void ScaleSums::follow_level(int level, const ScaleGroups& groups, const ElasticTruss& truss) {
+void ScaleSums::follow_level(int level, const ScaleGroups& groups,
+                             const truss::ElasticTruss& truss) {
   Level& at = level_at(level);
   const int before = static_cast<int>(at.groups.size());
   const bool top = level == coarsest();
@@ -127,8 +128,8 @@ void ScaleSums::follow_level(int level, const ScaleGroups& groups, const Elastic
     const Affine in_map = group < before ? frame_of(level, group)
                                          : shift_by(position(truss, groups.seed(level, group)));
     if (group >= before) {
-      make_room(at.frames);
-      make_room(at.groups);
+      geometry::make_room(at.frames);
+      geometry::make_room(at.groups);
       if (at.touched.capacity() <= at.groups.size()) at.touched.reserve(2 * at.groups.size() + 2);
       if (level == kFinest) seen_.push_back({in_map, inverse_of(in_map), 0});
       at.frames.emplace_back();
@@ -136,7 +137,7 @@ void ScaleSums::follow_level(int level, const ScaleGroups& groups, const Elastic
     }
     if (parent >= 0) {
       std::vector<int>& siblings = level_at(level + 1).groups[idx(parent)].members;
-      make_room(siblings);
+      geometry::make_room(siblings);
       siblings.push_back(group);
       touch_group(level + 1, parent);
     }
@@ -146,13 +147,13 @@ void ScaleSums::follow_level(int level, const ScaleGroups& groups, const Elastic
   }
 }
 
-void ScaleSums::follow_landmarks(const ScaleGroups& groups, ElasticTruss& truss) {
+void ScaleSums::follow_landmarks(const ScaleGroups& groups, truss::ElasticTruss& truss) {
   home_.reserve(idx(truss.joints()));
   for (int landmark = static_cast<int>(home_.size()); landmark < truss.joints(); ++landmark) {
     const int group = landmark > 0 ? groups.group_of(kFinest, landmark) : -1;
     if (group >= 0) {
       std::vector<int>& members = level_at(kFinest).groups[idx(group)].members;
-      make_room(members);
+      geometry::make_room(members);
       Seen& seen = seen_[idx(group)];
       if (members.empty()) {  // nothing of it to look at
         const Affine at = frame_of(kFinest, group);
@@ -174,9 +175,9 @@ int ScaleSums::tie_between(Level& level, int a, int b) {
     const Tie& tie = level.ties[idx(number)];
     if ((tie.a == a ? tie.b : tie.a) == b) return number;
   }
-  make_room(level.ties);
-  make_room(level.groups[idx(a)].ties);
-  if (b >= 0) make_room(level.groups[idx(b)].ties);
+  geometry::make_room(level.ties);
+  geometry::make_room(level.groups[idx(a)].ties);
+  if (b >= 0) geometry::make_room(level.groups[idx(b)].ties);
   const int number = static_cast<int>(level.ties.size());
   Tie tie;
   tie.a = a;
@@ -196,7 +197,7 @@ void ScaleSums::clear_sums(Level& level, int group) {
   one.landmarks = 0;
 }
 
-void ScaleSums::take_sums(int level, ElasticTruss& truss) {
+void ScaleSums::take_sums(int level, truss::ElasticTruss& truss) {
   Level& at = level_at(level);
   const bool finest = level == kFinest;
   for (const int group : at.touched) {
@@ -221,7 +222,7 @@ void ScaleSums::take_sums(int level, ElasticTruss& truss) {
 }
 
 /// So that its axes are the map's again, its origin among its landmarks.
-void ScaleSums::take_frame(int group, ElasticTruss& truss) {
+void ScaleSums::take_frame(int group, truss::ElasticTruss& truss) {
   const std::vector<int>& members = level_at(kFinest).groups[idx(group)].members;
   if (members.empty()) return;
   look(truss, members.front());
@@ -233,7 +234,7 @@ void ScaleSums::take_frame(int group, ElasticTruss& truss) {
   seen_[idx(group)] = {at, inverse_of(at), now_};
 }
 
-void ScaleSums::sum_landmarks(int group, ElasticTruss& truss) {
+void ScaleSums::sum_landmarks(int group, truss::ElasticTruss& truss) {
   Level& level = level_at(kFinest);
   Group& one = level.groups[idx(group)];
   one.landmarks = static_cast<int>(one.members.size());
@@ -245,7 +246,7 @@ void ScaleSums::sum_landmarks(int group, ElasticTruss& truss) {
     one.high = one.high.cwiseMax(place);
     one.spread += place * place.transpose();
     for (const int number : truss.elements_at(member)) {
-      const Element& bar = truss.element(number);
+      const truss::Element& bar = truss.element(number);
       const int other = bar.joints[0] == member ? bar.joints[1] : bar.joints[0];
       const int theirs = home(other);
       if (theirs == group) {
@@ -260,7 +261,7 @@ void ScaleSums::sum_landmarks(int group, ElasticTruss& truss) {
 }
 
 /// From the group to another one, or to what is held.
-void ScaleSums::sum_bar(int group, const Element& bar, const ElasticTruss& truss) {
+void ScaleSums::sum_bar(int group, const truss::Element& bar, const truss::ElasticTruss& truss) {
   Level& level = level_at(kFinest);
   const int from = home(bar.joints[0]);
   const int to = home(bar.joints[1]);
@@ -344,4 +345,4 @@ void ScaleSums::sum_members(int level, int group) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::map

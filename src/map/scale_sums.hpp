@@ -32,7 +32,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::map {
 
 class ScaleSums {
  public:
@@ -46,25 +46,25 @@ class ScaleSums {
 
   /// Takes in landmarks and groups that are new, and all of them at first. Positions in `truss`
   /// that are new are where they are. What throws leaves all positions as they were.
-  void follow(const ScaleGroups& groups, ElasticTruss& truss);
+  void follow(const ScaleGroups& groups, truss::ElasticTruss& truss);
 
   /// Where a landmark is now; in the truss it may still be where it was last looked at.
-  [[nodiscard]] Vector2 position(const ElasticTruss& truss, int landmark) const;
+  [[nodiscard]] Vector2 position(const truss::ElasticTruss& truss, int landmark) const;
 
   /// Lets the landmark's group in the truss be where it is.
-  void look(ElasticTruss& truss, int landmark) noexcept;
+  void look(truss::ElasticTruss& truss, int landmark) noexcept;
   /// The same of the landmarks and of all at the other ends of their bars.
-  void look_round(ElasticTruss& truss, const std::vector<int>& landmarks) noexcept;
+  void look_round(truss::ElasticTruss& truss, const std::vector<int>& landmarks) noexcept;
   /// The same of all landmarks, which are then no longer followed.
-  void settle(ElasticTruss& truss) noexcept;
+  void settle(truss::ElasticTruss& truss) noexcept;
 
   /// A landmark was moved by itself (it was looked at before), or a bar at it has changed.
   void touch(int landmark) noexcept;
 
   /// From the finest level on: first the sums of what was touched or moved below, then the groups
   /// come to equilibrium, all else held. Returns the energy that this took.
-  void take_sums(int level, ElasticTruss& truss);
-  double relax(int level, const std::vector<int>& groups, const ElasticTruss& truss);
+  void take_sums(int level, truss::ElasticTruss& truss);
+  double relax(int level, const std::vector<int>& groups, const truss::ElasticTruss& truss);
 
   /// Steps since begin() can be taken back, until commit().
   void begin() noexcept;
@@ -76,7 +76,7 @@ class ScaleSums {
   [[nodiscard]] double largest_move() const { return largest_move_; }
 
   /// The `count` landmarks nearest to a point, ascending; of those equally far the lowest numbers.
-  [[nodiscard]] std::vector<int> nearest(const ElasticTruss& truss, const Vector2& to,
+  [[nodiscard]] std::vector<int> nearest(const truss::ElasticTruss& truss, const Vector2& to,
                                          int count) const;
 
  private:
@@ -127,13 +127,13 @@ class ScaleSums {
   [[nodiscard]] Affine frame_of(int level, int group) const;
   void set_frame(int level, int group, const Affine& T);
   void touch_group(int level, int group) noexcept;
-  void follow_level(int level, const ScaleGroups& groups, const ElasticTruss& truss);
-  void follow_landmarks(const ScaleGroups& groups, ElasticTruss& truss);
+  void follow_level(int level, const ScaleGroups& groups, const truss::ElasticTruss& truss);
+  void follow_landmarks(const ScaleGroups& groups, truss::ElasticTruss& truss);
   int tie_between(Level& level, int a, int b);
   void clear_sums(Level& level, int group);
-  void sum_landmarks(int group, ElasticTruss& truss);
-  void take_frame(int group, ElasticTruss& truss);
-  void sum_bar(int group, const Element& bar, const ElasticTruss& truss);
+  void sum_landmarks(int group, truss::ElasticTruss& truss);
+  void take_frame(int group, truss::ElasticTruss& truss);
+  void sum_bar(int group, const truss::Element& bar, const truss::ElasticTruss& truss);
   void take_frame_of_members(int level, int group);
   void sum_members(int level, int group);
   void measure_members(int level, int group);
@@ -152,9 +152,9 @@ class ScaleSums {
   unsigned now_ = 1;        ///< counts moves of groups
   std::vector<Change> changes_;
   std::vector<int> place_;  ///< per group of a level: its place among the free ones, or -1
-  BandMatrix K_;
+  linalg::BandMatrix K_;
   int moved_ = 0;
   double largest_move_ = 0.0;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::map

@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-namespace trussmap {
+namespace trussmap::map {
 
 CommonLandmarks common_landmarks(const LandmarkPositions& map,
                                  const std::vector<SurveyPoint>& survey,
@@ -26,6 +26,11 @@ CommonLandmarks common_landmarks(const LandmarkPositions& map,
   }
   return common;
 }
+
+}  // namespace trussmap::map
+
+namespace trussmap {
+using namespace map;
 
 namespace {
 
@@ -52,7 +57,7 @@ Alignment robust_alignment(const CommonLandmarks& common) {
   const auto try_pair = [&](std::size_t i, std::size_t j) {
     const Alignment candidate = align_rigidly({common.in_map[i], common.in_map[j]},
                                               {common.surveyed[i], common.surveyed[j]});
-    const double middle = median(distances(common, candidate));
+    const double middle = statistics::median(distances(common, candidate));
     if (middle < least) {
       least = middle;
       best = candidate;
@@ -92,7 +97,7 @@ std::vector<bool> agreeing(const CommonLandmarks& common) {
   Alignment alignment = robust_alignment(common);
   for (int round = 0; round < 3; ++round) {
     const std::vector<double> off = distances(common, alignment);
-    const double middle = median(off);
+    const double middle = statistics::median(off);
     double sum = 0.0;
     double kept = 0.0;
     for (std::size_t k = 0; k < count; ++k) {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::monitor {
 namespace {
 
 /// Beyond, evidence is not told any more: it stays a finite number.
@@ -168,4 +168,4 @@ double ChangeDetector::cosine(std::size_t start, std::size_t a, std::size_t b) c
   return both > 0.0 ? gram(i, j) / both : 0.0;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::monitor

@@ -39,7 +39,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::monitor {
 
 struct DetectorOptions {
   double rate = 0.01;   ///< false alarms per hour
@@ -117,4 +117,4 @@ class ChangeDetector {
   std::optional<long> alarm_;  ///< the leg after which it was raised
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::monitor

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::monitor {
 namespace {
 
 bool goes_with_distance(ProcessKind kind) {
@@ -49,4 +49,4 @@ LastingError::Step LastingError::next(const LegReckoning& leg) {
   return {rho, q};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::monitor

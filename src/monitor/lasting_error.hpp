@@ -17,7 +17,7 @@
 #include "monitor/leg_odometry.hpp"
 #include "trussmap/model.hpp"
 
-namespace trussmap {
+namespace trussmap::monitor {
 
 class LastingError {
  public:
@@ -40,4 +40,4 @@ class LastingError {
   double last_variance_ = 0.0;  ///< v of the leg before
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::monitor

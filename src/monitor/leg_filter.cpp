@@ -11,7 +11,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace trussmap {
+namespace trussmap::monitor {
 namespace {
 
 /// What nothing has told: a variance that is as good as none knowledge, rad^2.
@@ -155,7 +155,7 @@ void LegFilter::update(const Eigen::VectorXd& innovation, const Eigen::MatrixXd&
 /// are reckoned from where they are then: exp(e) = exp(e') exp(moved), to first order in e'.
 void LegFilter::move_state(const Eigen::VectorXd& more) {
   const double turn = -more[heading_at()];
-  const UnitArc arc = unit_arc(turn);
+  const drive::UnitArc arc = drive::unit_arc(turn);
   Matrix2 V;
   V << arc.end, quarter_turn(arc.end);
   x_.head(anchor_at()) += more.head(anchor_at());
@@ -362,4 +362,4 @@ void LegFilter::add_lasting(const Eigen::VectorXd& u, double variance, const Noi
   ++lasting_count_;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::monitor

@@ -42,7 +42,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::monitor {
 
 /// A place in the map that the robot is at: a fix, a point of a survey.
 struct MapPlace {
@@ -133,4 +133,4 @@ class LegFilter {
   Eigen::Index columns_ = 0;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::monitor

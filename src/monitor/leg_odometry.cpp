@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::monitor {
 namespace {
 
 /// What more of way and turn adds to the displacement of an arc, in the frame of its start.
@@ -17,7 +17,7 @@ struct ArcDerivatives {
 };
 
 ArcDerivatives arc_derivatives(const BodyMotion& body) {
-  const UnitArc arc = unit_arc(body.turn);
+  const drive::UnitArc arc = drive::unit_arc(body.turn);
   ArcDerivatives result;
   result.by_way << arc.end, quarter_turn(arc.end);
   result.by_turn = body.forward * arc.slope + body.sideways * quarter_turn(arc.slope);
@@ -43,8 +43,8 @@ void LegOdometry::read_compass(double reading) {
   sum_of_readings_ += wrap_angle(at_start - first_reading_);
 }
 
-void LegOdometry::take(const Motion& motion, const RowMotion& shown, double reading, double excess,
-                       double excess_variance) {
+void LegOdometry::take(const Motion& motion, const drive::RowMotion& shown, double reading,
+                       double excess, double excess_variance) {
   const double before = leg_.displacement.heading;
   const Matrix2 R = rotation(before);
   const Vector2 step = R * motion.displacement.position();
@@ -64,7 +64,7 @@ void LegOdometry::take(const Motion& motion, const RowMotion& shown, double read
 
   const ArcDerivatives arc = arc_derivatives(shown.body);
   for (std::size_t k = 0; k < channels_.size(); ++k) {
-    const DrivePattern more = drive_pattern(channels_[k], 1.0, shown);
+    const effects::DrivePattern more = effects::drive_pattern(channels_[k], 1.0, shown);
     auto column = leg_.by_channel.col(static_cast<Eigen::Index>(k));
     column.head<2>() +=
         R * (arc.by_way * Vector2(more.advance, more.slip) + arc.by_turn * more.turn);
@@ -102,4 +102,4 @@ LegReckoning LegOdometry::finish() {
   return leg;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::monitor

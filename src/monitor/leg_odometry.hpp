@@ -27,7 +27,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::monitor {
 
 using LegVector = Eigen::Matrix<double, 5, 1>;
 using LegMatrix = Eigen::Matrix<double, 5, 5>;
@@ -57,7 +57,7 @@ class LegOdometry {
 
   /// A row's motion with its covariance, as channels see it, and the compass reading at its end
   /// (rad, NaN: none), the gyro's excess (rad) and its variance.
-  void take(const Motion& motion, const RowMotion& shown, double reading, double excess,
+  void take(const Motion& motion, const drive::RowMotion& shown, double reading, double excess,
             double excess_variance);
 
   /// The leg so far; a new one begins.
@@ -75,4 +75,4 @@ class LegOdometry {
   double sum_of_readings_ = 0.0;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::monitor

@@ -17,6 +17,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace monitor;
+
 namespace {
 
 constexpr std::size_t kStartsKept = 24;
@@ -32,8 +34,8 @@ constexpr double kPerHour = 1.0 / 3600.0;
 
 /// Whether the end of a leg shows what acts on this channel.
 bool is_seen(Channel channel, const Robot& robot) {
-  return (acts_on(channel) == ActsOn::drives || channel == Channel::compass) &&
-         is_of_drive(channel, robot);
+  return (effects::acts_on(channel) == effects::ActsOn::drives || channel == Channel::compass) &&
+         effects::is_of_drive(channel, robot);
 }
 
 MonitorOptions checked_options(MonitorOptions options, const Model& model,
@@ -129,7 +131,7 @@ class __attribute__((visibility("hidden"))) Monitor::State {
 
   CorrectedRow drive(const WheelRow& row, std::span<const double> covariates) {
     CorrectedRow result = odometry_.drive(row, covariates);
-    const RowMotion& shown = odometry_.shown();
+    const drive::RowMotion& shown = odometry_.shown();
     // The variance of the excess: the gyro's, and that of the wheels (wheels_and_gyro.hpp).
     const double gyro = noise_.gyro * noise_.gyro * shown.duration;
     const double variance = gyro / std::max(1.0 - shown.gyro_share, 1e-12);
@@ -266,7 +268,8 @@ class __attribute__((visibility("hidden"))) Monitor::State {
     if (!(since.sd > 0.0)) return;
     const WatchedEffect& watched = options_.effects[since.effect];
     FoundEffect found;
-    found.effect = {watched.name, watched.channel, {constant_shape()}, {since.coefficient}};
+    found.effect = {
+        watched.name, watched.channel, {effects::constant_shape()}, {since.coefficient}};
     found.sd = since.sd;
     found.share = shares_[since.effect];
     found.leg = since.leg;
@@ -290,7 +293,7 @@ class __attribute__((visibility("hidden"))) Monitor::State {
   Noise noise_;
   MonitorOptions options_;
   std::vector<NoiseProcess> lasting_;
-  OnlineOdometry odometry_;
+  fitting::OnlineOdometry odometry_;
   LegOdometry leg_;
   LegFilter filter_;
   ChangeDetector detector_;

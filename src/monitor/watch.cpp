@@ -69,7 +69,7 @@ class RowsAsRead {
   void take_unicycle_part(double share, WheelRow& row) const {
     const BodyMotion body = drive_.wheel_motion(row_);
     row.readings.push_back(share * body.forward);
-    if (turns_by_gyro(robot_)) {
+    if (fitting::turns_by_gyro(robot_)) {
       row.yaw_rate = body.turn / drive_.duration(row_);
     } else {
       row.readings.push_back(share * body.turn);
@@ -88,7 +88,7 @@ class RowsAsRead {
 std::vector<PossibleEnd> possible_ends(const DrivenRecording& recording,
                                        const WatchOptions& options, int& passed_over) {
   std::vector<PossibleEnd> ends;
-  for (const Stop& stop : stops_of(recording.sightings)) {
+  for (const drive::Stop& stop : drive::stops_of(recording.sightings)) {
     PossibleEnd end{stop.t, {}, {}, options.min_drive};
     for (std::size_t k = stop.first; k < stop.first + stop.count; ++k) {
       const Sighting& one = recording.sightings[k];
@@ -131,16 +131,16 @@ Watch watch(const DrivenRecording& recording, const Model& model, const WatchOpt
   OdometryInputs inputs;
   for (const Covariate& one : drive.covariates) inputs.covariates.push_back(one.name);
   inputs.compass = drive.has_compass();
-  inputs.gyro = drive.has_gyro() || turns_by_gyro(model.robot);
+  inputs.gyro = drive.has_gyro() || fitting::turns_by_gyro(model.robot);
   Monitor monitor(model, inputs, options.monitor);
   for (const SurveyPoint& point : recording.survey) monitor.know(point);
-  const std::vector<double> path = driven_path(drive);
+  const std::vector<double> path = drive::driven_path(drive);
   RowsAsRead rows(drive, model.robot, monitor);
   double last = 0.0;  // m of driven path
   bool begun = false;
   for (const PossibleEnd& end : ends) {
     if (end.t < drive.start() - kSameInstant || end.t > drive.t.back() + kSameInstant) continue;
-    const double driven = path_at(drive, path, end.t);
+    const double driven = drive::path_at(drive, path, end.t);
     if (begun && driven - last < end.apart) continue;
     rows.drive_to(end.t);
     const MonitorReport report = monitor.arrive(end.measured);

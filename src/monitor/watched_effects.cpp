@@ -31,8 +31,8 @@ std::vector<WatchedEffect> watched_effects(const Robot& robot, const OdometryInp
   std::vector<WatchedEffect> result;
   for (const WatchedEffect& one : all) {
     const bool of_gyro = one.channel == Channel::gyro || one.channel == Channel::gyro_scale;
-    const bool beside_gyro = inputs.gyro && !turns_by_gyro(robot);
-    if (!is_of_drive(one.channel, robot) || (of_gyro && !beside_gyro) ||
+    const bool beside_gyro = inputs.gyro && !fitting::turns_by_gyro(robot);
+    if (!effects::is_of_drive(one.channel, robot) || (of_gyro && !beside_gyro) ||
         (one.channel == Channel::compass && !inputs.compass)) {
       continue;
     }

@@ -42,7 +42,7 @@ double g2(double x) {
 }  // namespace
 
 Pose arc_displacement(const WheelTravel& travel, double wheelbase) {
-  const BodyMotion motion = body_motion(travel, wheelbase);
+  const BodyMotion motion = drive::body_motion(travel, wheelbase);
   return arc_displacement(motion.forward, motion.turn);
 }
 
@@ -142,7 +142,7 @@ Matrix3 slanting_covariance(const Vector2& way, double turn, const ArcNoise& noi
 }
 
 Matrix3 arc_covariance(const WheelTravel& travel, double wheelbase, const WheelNoise& noise) {
-  const BodyMotion motion = body_motion(travel, wheelbase);
+  const BodyMotion motion = drive::body_motion(travel, wheelbase);
   return arc_covariance(motion.forward, motion.turn, wheel_arc_noise(travel, wheelbase, noise));
 }
 

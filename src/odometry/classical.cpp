@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::odometry {
 
 Motion classical_step(ClassicalModel model, const ClassicalStep& step) {
   const double share = model == ClassicalModel::midpoint ? 0.5 : 1.0;
@@ -21,4 +21,4 @@ Motion classical_step(ClassicalModel model, const ClassicalStep& step) {
   return motion;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::odometry

@@ -16,7 +16,7 @@
 
 #include "trussmap/arc.hpp"
 
-namespace trussmap {
+namespace trussmap::odometry {
 
 enum class ClassicalModel { turn_then_drive, midpoint };
 
@@ -30,4 +30,4 @@ struct ClassicalStep {
 /// One step, in the frame of its start; join steps with then().
 [[nodiscard]] Motion classical_step(ClassicalModel model, const ClassicalStep& step);
 
-}  // namespace trussmap
+}  // namespace trussmap::odometry

@@ -12,6 +12,8 @@
 #include <optional>
 
 namespace trussmap {
+using namespace odometry;
+
 namespace {
 
 /// Nothing where two wheels' alone is meant.
@@ -26,7 +28,7 @@ std::optional<ArcNoise> noise_of_row(const MotionRows& drive, const DriveRow& ro
 ArcNoise arc_noise(const WheelTravel& travel, double duration, const Robot& robot,
                    const Noise& noise) {
   ArcNoise sources = wheel_arc_noise(travel, robot.wheelbase, WheelNoise{noise.left, noise.right});
-  const double turn = body_motion(travel, robot.wheelbase).turn;
+  const double turn = drive::body_motion(travel, robot.wheelbase).turn;
   sources.along += noise.travel_per_s * noise.travel_per_s * duration;
   sources.heading += noise.heading_per_s * noise.heading_per_s * duration +
                      noise.heading_per_rad * noise.heading_per_rad * std::abs(turn);
@@ -35,13 +37,14 @@ ArcNoise arc_noise(const WheelTravel& travel, double duration, const Robot& robo
 
 Matrix3 arc_covariance(const WheelTravel& travel, double duration, const Robot& robot,
                        const Noise& noise) {
-  const BodyMotion motion = body_motion(travel, robot.wheelbase);
+  const BodyMotion motion = drive::body_motion(travel, robot.wheelbase);
   return arc_covariance(motion.forward, motion.turn, arc_noise(travel, duration, robot, noise));
 }
 
 LandmarkOffset landmark_offset(const Sighting& sighting, const Noise& noise) {
   if (sighting.standing()) {
-    return {code_from_robot(sighting), noise.sighting * noise.sighting * Matrix2::Identity()};
+    return {recording::code_from_robot(sighting),
+            noise.sighting * noise.sighting * Matrix2::Identity()};
   }
   const Matrix2 R = rotation(sighting.bearing);
   const double along =
@@ -107,7 +110,7 @@ PoseEstimate dead_reckon(const PoseEstimate& start, const MotionRows& drive, dou
     const Motion end =
         then({estimate.pose, estimate.covariance},
              {displacement_of(arc.motion),
-              arc_covariance(wheel_travel(arc.motion, robot), arc.duration, robot, noise)});
+              arc_covariance(drive::wheel_travel(arc.motion, robot), arc.duration, robot, noise)});
     estimate = {end.displacement, end.covariance};
   }
   estimate.pose = start.pose;

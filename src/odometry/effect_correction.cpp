@@ -5,7 +5,7 @@
 #include "drive/row_variables.hpp"
 #include "effects/corrected_recording.hpp"
 
-namespace trussmap {
+namespace trussmap::odometry {
 namespace {
 
 Pose start_pose(const MotionRows& drive, const Model& model) {
@@ -24,15 +24,15 @@ std::vector<DrivenRecording> without_effects(const std::vector<DrivenRecording>&
     DrivenRecording corrected = recording;
     for (int pass = 0; pass < 2; ++pass) {
       const std::vector<Pose> path = dead_reckoned_path(corrected.drive, model.robot, model.noise);
-      corrected =
-          corrected_recording(recording, model,
-                              row_variables(recording.drive, model.robot,
-                                            start_pose(corrected.drive, model), path, session),
-                              session);
+      corrected = effects::corrected_recording(
+          recording, model,
+          drive::row_variables(recording.drive, model.robot, start_pose(corrected.drive, model),
+                               path, session),
+          session);
     }
     result.push_back(std::move(corrected));
   }
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::odometry

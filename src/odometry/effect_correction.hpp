@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::odometry {
 
 /// Each recording as corrected_recording.hpp makes it. Shapes that speak of heading, x or y see the
 /// dead-reckoned path of the corrected recording itself, which two passes give. Throws
@@ -17,4 +17,4 @@ namespace trussmap {
 [[nodiscard]] std::vector<DrivenRecording> without_effects(
     const std::vector<DrivenRecording>& recordings, const Model& model);
 
-}  // namespace trussmap
+}  // namespace trussmap::odometry

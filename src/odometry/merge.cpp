@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::odometry {
 namespace {
 
 constexpr double kSameCurvature = 0.1;  // of q
@@ -19,12 +19,12 @@ enum class Kind { standing, forward, backward, spin_left, spin_right };
 
 /// m that each of two wheels goes for the turn alone, to the left.
 double turned_way(const BodyMotion& motion, const Robot& robot) {
-  return wheel_travel({0.0, 0.0, motion.turn}, robot).right;
+  return drive::wheel_travel({0.0, 0.0, motion.turn}, robot).right;
 }
 
 Kind kind_of(const BodyMotion& motion, const Robot& robot) {
   constexpr double kRounding = 1e-12;  // where one wheel stands it is no spin
-  if (2.0 * mean_travel(motion, robot) < kStanding) return Kind::standing;
+  if (2.0 * drive::mean_travel(motion, robot) < kStanding) return Kind::standing;
   if (std::abs(turned_way(motion, robot)) > (1.0 + kRounding) * std::abs(motion.forward)) {
     return motion.turn > 0.0 ? Kind::spin_left : Kind::spin_right;
   }
@@ -32,16 +32,16 @@ Kind kind_of(const BodyMotion& motion, const Robot& robot) {
 }
 
 double curvature_of(const BodyMotion& motion, const Robot& robot) {
-  const double way = mean_travel(motion, robot);
+  const double way = drive::mean_travel(motion, robot);
   return way > 0.0 ? turned_way(motion, robot) / way : 0.0;
 }
 
 /// Standard deviation of q that wheel noise gives.
 double curvature_noise(const BodyMotion& motion, const Robot& robot, const WheelNoise& noise) {
-  const WheelTravel travel = wheel_travel(motion, robot);
+  const WheelTravel travel = drive::wheel_travel(motion, robot);
   return std::sqrt(noise.left * noise.left * std::abs(travel.left) +
                    noise.right * noise.right * std::abs(travel.right)) /
-         (2.0 * mean_travel(motion, robot));
+         (2.0 * drive::mean_travel(motion, robot));
 }
 
 bool same_arc(const DriveArc& arc, const BodyMotion& row, const Robot& robot,
@@ -79,7 +79,7 @@ GrowingArc GrowingArc::with(const BodyMotion& row, double duration, const Robot&
   longer.arc_.duration += duration;
   ++longer.arc_.rows;
   longer.rows_ = compose(rows_, arc_displacement(row.forward, row.turn));
-  longer.path_ += mean_travel(row, robot);
+  longer.path_ += drive::mean_travel(row, robot);
   return longer;
 }
 
@@ -108,4 +108,4 @@ std::vector<DriveArc> merge_rows(const MotionRows& drive, const std::vector<Driv
   return arcs;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::odometry

@@ -20,7 +20,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::odometry {
 
 struct DriveArc {
   BodyMotion motion;      ///< sums over the rows, nothing to the side
@@ -64,4 +64,4 @@ class GrowingArc {
                                                const std::vector<DriveRow>& rows,
                                                const Robot& robot, const WheelNoise& noise);
 
-}  // namespace trussmap
+}  // namespace trussmap::odometry

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::odometry {
 namespace {
 
 /// Moves the estimate by a motion given in the robot's frame.
@@ -33,7 +33,7 @@ Matrix3 covariance_of(const ReckonedRow& row, const Robot& robot, const Noise& n
   return slanting_covariance(
       Vector2(row.motion.forward, row.motion.sideways), row.motion.turn,
       row.noise ? *row.noise
-                : arc_noise(wheel_travel(row.motion, robot), row.duration, robot, noise));
+                : arc_noise(drive::wheel_travel(row.motion, robot), row.duration, robot, noise));
 }
 
 Pose displacement_of(const BodyMotion& motion) {
@@ -87,7 +87,7 @@ void RowReckoner::take(const ReckonedRow& row, const Robot& robot, const Noise& 
   const DriveArc& arc = arc_.arc();
   const Pose exact = compose(at_.pose, displacement);
   at_ = moved(anchor_, displacement_of(arc.motion),
-              arc_covariance(wheel_travel(arc.motion, robot), arc.duration, robot, noise));
+              arc_covariance(drive::wheel_travel(arc.motion, robot), arc.duration, robot, noise));
   at_.pose = exact;
 }
 
@@ -97,4 +97,4 @@ void RowReckoner::add_first_variance(double variance) {
   at_.covariance += variance * by_heading * by_heading.transpose();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::odometry

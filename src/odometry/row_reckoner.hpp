@@ -15,7 +15,7 @@
 
 #include <optional>
 
-namespace trussmap {
+namespace trussmap::odometry {
 
 /// In the frame of its start.
 [[nodiscard]] Pose displacement_of(const BodyMotion& motion);
@@ -65,4 +65,4 @@ class RowReckoner {
   bool compass_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::odometry

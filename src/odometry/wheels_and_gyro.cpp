@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace trussmap {
+namespace trussmap::odometry {
 namespace {
 
 double gyro_variance(const Noise& noise, double duration) {
@@ -44,7 +44,7 @@ ArcNoise columns_noise(const MotionRows& drive, std::size_t row, double part, do
 ArcNoise wheels_noise(const MotionRows& drive, std::size_t row, double part, double duration,
                       const Robot& robot, const Noise& noise) {
   if (!drive.wheels.empty()) return columns_noise(drive, row, part, duration, noise);
-  return arc_noise(part * noisy_travel(drive, row, robot), duration, robot, noise);
+  return arc_noise(part * drive::noisy_travel(drive, row, robot), duration, robot, noise);
 }
 
 }  // namespace
@@ -141,4 +141,4 @@ double excess_variance(const MotionRows& drive, std::size_t row, double part, do
   return of_wheels + gyro_variance(noise, duration);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::odometry

@@ -24,7 +24,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::odometry {
 
 /// Of one row, from its wheels' motion, its noise, and the gyro's reading (rad/s, NaN: none).
 [[nodiscard]] GyroShare gyro_share(const BodyMotion& wheels, double yaw_rate, double duration,
@@ -55,4 +55,4 @@ namespace trussmap {
 [[nodiscard]] double excess_variance(const MotionRows& drive, std::size_t row, double part,
                                      double duration, const Robot& robot, const Noise& noise);
 
-}  // namespace trussmap
+}  // namespace trussmap::odometry

@@ -155,6 +155,10 @@ int available_threads() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
+}  // namespace trussmap
+
+namespace trussmap::parallel {
+
 bool is_parallel() {
   return !within_turn && threads() > 1;
 }
@@ -177,4 +181,4 @@ void parallel_ranges(std::size_t turns, std::size_t block,
                [&](std::size_t k) { range(k * block, std::min(turns, (k + 1) * block)); });
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::parallel

@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace trussmap {
+namespace trussmap::parallel {
 
 /// Calls turn(0) ... turn(turns - 1), each once, in any order and at the same time. Within a turn,
 /// further loops run on its own thread. Of exceptions the one of the lowest turn is thrown, as if
@@ -27,4 +27,4 @@ void parallel_ranges(std::size_t turns, std::size_t block,
 /// Whether a loop here would have more than one thread.
 [[nodiscard]] bool is_parallel();
 
-}  // namespace trussmap
+}  // namespace trussmap::parallel

@@ -4,7 +4,7 @@
 
 #include "planning/instruments.hpp"
 
-namespace trussmap {
+namespace trussmap::planning {
 
 std::vector<bool> beyond_drives(const SearchTask& task, const std::vector<double>& before) {
   constexpr double kBeyond = 0.25;  // of the lambda that is lacking
@@ -36,4 +36,4 @@ std::vector<double> drive_for(const SearchTask& task, const std::vector<bool>& b
   return lambdas_of(task, gram_with(task, task.world, result.plan));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::planning {
 
 /// The questions of which even a thorough tour tells less than a quarter of what is lacking.
 /// `before`: lambda of each without a drive.
@@ -21,4 +21,4 @@ namespace trussmap {
 [[nodiscard]] std::vector<double> drive_for(const SearchTask& task, const std::vector<bool>& beyond,
                                             PlannedDrive& result);
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

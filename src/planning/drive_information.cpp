@@ -12,13 +12,14 @@
 #include <cmath>
 #include <numeric>
 
-namespace trussmap {
+namespace trussmap::planning {
 namespace {
 
 constexpr double kLeastMode = 1e-10;  // of the scaled information: below it nothing is known
 
 /// The border with all its coefficients held where the fit has them.
-EffectParameters held_at(EffectParameters border, const Eigen::VectorXd& offsets) {
+estimation::EffectParameters held_at(estimation::EffectParameters border,
+                                     const Eigen::VectorXd& offsets) {
   for (std::size_t k = 0; k < border.size(); ++k) {
     border[k].held = border[k].reference + offsets[static_cast<Eigen::Index>(k)];
   }
@@ -26,13 +27,13 @@ EffectParameters held_at(EffectParameters border, const Eigen::VectorXd& offsets
 }
 
 /// Rows by the map's unknowns, landmarks, then orientations. A survey's stand at its own node.
-Eigen::MatrixXd map_columns(const RecordingProblem& problem, const RecordingSystem& system,
-                            bool survey) {
+Eigen::MatrixXd map_columns(const estimation::RecordingProblem& problem,
+                            const estimation::RecordingSystem& system, bool survey) {
   const Eigen::Index places = Eigen::Index{2} * problem.landmark_count();
   const auto orientations = static_cast<Eigen::Index>(problem.oriented.size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(system.rows(), places + orientations);
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
-    const Measurement& one = problem.measurements[k];
+    const estimation::Measurement& one = problem.measurements[k];
     const bool surveyed = one.session < 0;
     const int node = surveyed ? one.from : one.to;
     if (node < 0 || (surveyed && !survey)) continue;
@@ -57,10 +58,11 @@ Eigen::MatrixXd map_columns(const RecordingProblem& problem, const RecordingSyst
   return result;
 }
 
-Eigen::MatrixXd effect_columns_of(ColumnBuilder& builder, const std::vector<Effect>& effects) {
+Eigen::MatrixXd effect_columns_of(fitting::ColumnBuilder& builder,
+                                  const std::vector<Effect>& effects) {
   Eigen::MatrixXd all(builder.rows(), 0);
   if (effects.empty()) return all;
-  for (const Eigen::MatrixXd& one : builder.columns(effects)) append_columns(all, one);
+  for (const Eigen::MatrixXd& one : builder.columns(effects)) linalg::append_columns(all, one);
   return all;
 }
 
@@ -76,7 +78,8 @@ Eigen::MatrixXd without(const Eigen::MatrixXd& A, const std::vector<Eigen::Index
   const Eigen::MatrixXd D = A(gone, gone);
   const Eigen::ArrayXd sd = D.diagonal().array().max(0.0).sqrt();
   const Eigen::VectorXd scale = (sd > 0.0).select(1.0 / sd, 0.0);
-  const SymmetricModes modes = symmetric_modes(scale.asDiagonal() * D * scale.asDiagonal());
+  const linalg::SymmetricModes modes =
+      linalg::symmetric_modes(scale.asDiagonal() * D * scale.asDiagonal());
   const Eigen::MatrixXd across = scale.asDiagonal() * A(gone, kept);
   Eigen::MatrixXd shown = modes.eigenvectors.transpose() * across;
   for (Eigen::Index k = 0; k < shown.rows(); ++k) {
@@ -92,28 +95,30 @@ Eigen::Index DriveInformation::column_of(const std::string& landmark) const {
   return found == landmarks.end() ? -1 : 2 * static_cast<Eigen::Index>(found - landmarks.begin());
 }
 
-DriveInformation information_of(const FitState& fit, const InformationOf& what) {
-  const Eigen::VectorXd offsets = offsets_of(fit);
-  const NoiseFree clean(fit.recordings, fit.model, fit.problem, fit.columns.border, offsets,
-                        fit.adjustment.state);
-  const EffectParameters held = held_at(clean.border, offsets);
+DriveInformation information_of(const fitting::FitState& fit, const InformationOf& what) {
+  const Eigen::VectorXd offsets = fitting::offsets_of(fit);
+  const fitting::NoiseFree clean(fit.recordings, fit.model, fit.problem, fit.columns.border,
+                                 offsets, fit.adjustment.state);
+  const estimation::EffectParameters held = held_at(clean.border, offsets);
   const std::vector<double> weights =
-      weights_without(fit.adjustment.left_out, fit.problem.measurements.size());
-  RecordingSystem system(clean.problem, held, RecordingGauge{.hold_map = true});
+      estimation::weights_without(fit.adjustment.left_out, fit.problem.measurements.size());
+  estimation::RecordingSystem system(clean.problem, held,
+                                     estimation::RecordingGauge{.hold_map = true});
   system.set_weights(weights);
   static_cast<void>(system.linearise(clean.state, {}));
   try {
     system.normal_equations().factorise();
-  } catch (const NotPositiveDefinite&) {
+  } catch (const linalg::NotPositiveDefinite&) {
     throw SolveError(clean.problem.sessions.front() +
                      ": its path is not determined where the landmarks are known; sight more of "
                      "them");
   }
-  ColumnBuilder builder(clean.context, clean.problem, clean.border, offsets, clean.state, weights);
+  fitting::ColumnBuilder builder(clean.context, clean.problem, clean.border, offsets, clean.state,
+                                 weights);
   Eigen::MatrixXd F = map_columns(clean.problem, system, what.survey);
-  append_columns(F, effect_columns_of(builder, what.own));
+  linalg::append_columns(F, effect_columns_of(builder, what.own));
   const Eigen::Index own_end = F.cols();
-  append_columns(F, effect_columns_of(builder, what.effects));
+  linalg::append_columns(F, effect_columns_of(builder, what.effects));
   F = system.free_of_nodes(std::move(F));
   DriveInformation result;
   result.landmarks = clean.problem.landmarks;
@@ -175,4 +180,4 @@ Eigen::MatrixXd gram_of(const DriveInformation& whole) {
   return reduced_to(whole, {}).H;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

@@ -25,7 +25,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::planning {
 
 struct DriveInformation {
   std::vector<std::string> landmarks;
@@ -46,7 +46,8 @@ struct InformationOf {
 
 /// Throws SolveError where the landmarks do not determine the path, std::invalid_argument on a
 /// shape that the recordings do not have.
-[[nodiscard]] DriveInformation information_of(const FitState& fit, const InformationOf& what);
+[[nodiscard]] DriveInformation information_of(const fitting::FitState& fit,
+                                              const InformationOf& what);
 
 /// The first one's landmarks, then those that only the second has; their effects are the same.
 [[nodiscard]] DriveInformation sum_of(const DriveInformation& one, const DriveInformation& other);
@@ -62,4 +63,4 @@ struct InformationOf {
 [[nodiscard]] Eigen::MatrixXd without(const Eigen::MatrixXd& A,
                                       const std::vector<Eigen::Index>& gone);
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

@@ -9,6 +9,8 @@
 #include <cmath>
 
 namespace trussmap {
+using namespace planning;
+
 namespace {
 
 constexpr double kTape = 0.002;      // m
@@ -111,6 +113,10 @@ std::string_view name_of(Instrument instrument) {
   return "truth";
 }
 
+}  // namespace trussmap
+
+namespace trussmap::planning {
+
 std::vector<InstrumentWorth> worth_of_instruments(const SearchTask& task, const DrivePlan& plan,
                                                   const std::vector<bool>& beyond) {
   const double usual =
@@ -140,4 +146,4 @@ std::vector<InstrumentWorth> worth_of_instruments(const SearchTask& task, const 
   return all;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

@@ -15,11 +15,11 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::planning {
 
 /// Of a task with all questions, those beyond the drive marked. The most useful first.
 [[nodiscard]] std::vector<InstrumentWorth> worth_of_instruments(const SearchTask& task,
                                                                 const DrivePlan& plan,
                                                                 const std::vector<bool>& beyond);
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace trussmap {
+namespace trussmap::planning {
 namespace {
 
 std::vector<double> first_levels(const PlanWorld& world) {
@@ -88,4 +88,4 @@ DrivePlan plan_of(const PlanWorld& world, const PlannedTour& tour) {
   return plan;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

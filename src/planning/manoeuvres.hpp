@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::planning {
 
 inline constexpr double kStand = 30.0;       // s
 inline constexpr double kLongStand = 300.0;  // s: until time and distance have gone apart
@@ -48,4 +48,4 @@ struct PlannedTour {
 
 [[nodiscard]] DrivePlan plan_of(const PlanWorld& world, const PlannedTour& tour);
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

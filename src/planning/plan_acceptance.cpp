@@ -15,6 +15,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace planning;
+
 namespace {
 
 constexpr double kFastest = 0.9;  // m/s
@@ -78,12 +80,12 @@ DriveInformation known_of(const LandmarkGraph& map, const PlanWorld& world, Eige
 }
 
 /// Effects of the catalogue that such a drive may show, with the practical size of each shape.
-std::vector<PlannedEffect> practical_effects(const FitState& fit, double times) {
-  const ScoreTest tests(fit);
+std::vector<PlannedEffect> practical_effects(const fitting::FitState& fit, double times) {
+  const criticism::ScoreTest tests(fit);
   std::vector<PlannedEffect> effects;
-  for (const Candidate& one : candidates_for(fit, tests.context())) {
+  for (const criticism::Candidate& one : criticism::candidates_for(fit, tests.context())) {
     const CatalogueEntry* entry =
-        one.form == Form::catalogue ? find_entry(one.effect.name) : nullptr;
+        one.form == criticism::Form::catalogue ? find_entry(one.effect.name) : nullptr;
     if (entry == nullptr || entry->has_parameters() || !(entry->detectable > 0.0)) continue;
     if (speaks_of_sessions(one.effect)) continue;
     PlannedEffect effect{one.effect};
@@ -93,7 +95,7 @@ std::vector<PlannedEffect> practical_effects(const FitState& fit, double times) 
   std::vector<Effect> asked;
   asked.reserve(effects.size());
   for (const PlannedEffect& one : effects) asked.push_back(one.effect);
-  const std::vector<Score> scores = tests.test(asked);
+  const std::vector<criticism::Score> scores = tests.test(asked);
   for (std::size_t k = 0; k < effects.size(); ++k) {
     for (const double largest : scores[k].largest) {
       effects[k].effect.coefficients.push_back(largest > 0.0 ? effects[k].size / largest : 0.0);
@@ -121,7 +123,7 @@ Asked questions_of(const std::vector<PlannedEffect>& effects,
       one.columns = columns[k];
       one.sizes = Eigen::VectorXd::Zero(shapes);
       one.sizes[shape] = effects[k].effect.coefficients[idx(shape)];
-      one.threshold = chi2_quantile(1.0 - level, static_cast<double>(shapes));
+      one.threshold = statistics::chi2_quantile(1.0 - level, static_cast<double>(shapes));
       want_power(one, options.power);
       asked.questions.push_back(std::move(one));
       asked.effects.push_back(k);

@@ -12,6 +12,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace planning;
+
 namespace {
 
 /// Whether any goes with what depends on all that was driven before.
@@ -41,7 +43,8 @@ Question question_of(const Pair& pair, const RivalSubject& subject,
       Eigen::Map<const Eigen::VectorXd>(sizes.data(), static_cast<Eigen::Index>(sizes.size()));
   one.sd_share = std::sqrt(subject.phi / std::max(subject.phi, subject.scores[pair.truth]));
   one.threshold = std::max(
-      kToldApart, chi2_quantile(1.0 - options.level, static_cast<double>(one.columns.size())));
+      kToldApart,
+      statistics::chi2_quantile(1.0 - options.level, static_cast<double>(one.columns.size())));
   want_power(one, options.power);
   return one;
 }
@@ -66,8 +69,8 @@ AskedPairs ask_pairs(const RivalSubject& subject,
   return asked;
 }
 
-SearchTask task_of(const FitState& fit, const RivalSubject& subject, const PlanWorld& world,
-                   const PlanOptions& options) {
+SearchTask task_of(const fitting::FitState& fit, const RivalSubject& subject,
+                   const PlanWorld& world, const PlanOptions& options) {
   std::vector<Effect> effects = subject.rivals;
   effects.insert(effects.end(), subject.beside.begin(), subject.beside.end());
   SearchTask task{world,
@@ -109,7 +112,7 @@ PlannedDrive plan_drive(const Diagnosis& diagnosis, const PlanOptions& options) 
   if (!diagnosis.under) {
     throw std::invalid_argument("a drive is planned for a diagnosis that estimated noise");
   }
-  const FitState& fit = *diagnosis.under->fit.state;
+  const fitting::FitState& fit = *diagnosis.under->fit.state;
   const RivalSubject subject = rivals_of(diagnosis, options);
   const PlanWorld world =
       recorded_world(fit, variables_in(subject.rivals), options.start, options.max_speed);

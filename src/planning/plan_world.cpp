@@ -10,7 +10,7 @@
 #include <queue>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::planning {
 namespace {
 
 constexpr std::uint64_t kAnySeed = 1;  // of which landmarks are recognised from afar
@@ -98,13 +98,13 @@ DrivenRecording planned_recording(const PlanWorld& world, const DrivePlan& plan)
   return with_wheels(std::move(recording), world.model.robot);
 }
 
-FitState planned_fit(const PlanWorld& world, const DrivePlan& plan) {
-  FitterOptions how;
+fitting::FitState planned_fit(const PlanWorld& world, const DrivePlan& plan) {
+  fitting::FitterOptions how;
   how.fit_effects = false;
   how.relinearise = false;
   how.landmark_uncertainties = false;
   how.max_rounds = 1;
-  return fit_recordings({planned_recording(world, plan)}, world.model, how);
+  return fitting::fit_recordings({planned_recording(world, plan)}, world.model, how);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::planning {
 
 /// A column of the recording that the driver sets, and what to.
 struct LoadLevels {
@@ -56,6 +56,6 @@ void lay_near(int start, const RouteNetwork& routes, PlanWorld& world);
 [[nodiscard]] DrivenRecording planned_recording(const PlanWorld& world, const DrivePlan& plan);
 
 /// A fit of it, at the truth.
-[[nodiscard]] FitState planned_fit(const PlanWorld& world, const DrivePlan& plan);
+[[nodiscard]] fitting::FitState planned_fit(const PlanWorld& world, const DrivePlan& plan);
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

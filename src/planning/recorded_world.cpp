@@ -17,7 +17,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::planning {
 namespace {
 
 constexpr double kStraight = 1.2;     // driven length over distance of a route
@@ -37,7 +37,7 @@ double length_between(const MotionRows& drive, double from, double to) {
 }
 
 /// Routes that were driven about straight, with their ends.
-Exits routes_of(const FitState& fit, const std::map<std::string, Vector2>& places) {
+Exits routes_of(const fitting::FitState& fit, const std::map<std::string, Vector2>& places) {
   Exits exits;
   for (const DrivenRecording& recording : fit.recordings) {
     const Sighting* last = nullptr;
@@ -56,7 +56,7 @@ Exits routes_of(const FitState& fit, const std::map<std::string, Vector2>& place
   return exits;
 }
 
-std::string start_of(const FitState& fit, const Exits& exits, const std::string& wanted) {
+std::string start_of(const fitting::FitState& fit, const Exits& exits, const std::string& wanted) {
   if (exits.empty()) {
     throw SolveError(
         "the recordings show no route that was driven straight from one landmark to another that "
@@ -98,7 +98,7 @@ double quantile_of(std::vector<double> values, double share, double otherwise) {
   return values[idx(std::lround(share * static_cast<double>(values.size() - 1)))];
 }
 
-void learn_rates(const FitState& fit, double max_speed, PlanWorld& world) {
+void learn_rates(const fitting::FitState& fit, double max_speed, PlanWorld& world) {
   std::vector<double> speeds;
   std::vector<double> rates;
   for (const DrivenRecording& recording : fit.recordings) {
@@ -129,7 +129,7 @@ void learn_rates(const FitState& fit, double max_speed, PlanWorld& world) {
   for (double& one : world.turn_rates) one = digits(one);
 }
 
-void learn_sensors(const FitState& fit, PlanWorld& world) {
+void learn_sensors(const fitting::FitState& fit, PlanWorld& world) {
   WheeledRobot& robot = world.robot;
   robot.geometry = fit.model.robot;
   robot.noise = kNoiseFree;
@@ -179,7 +179,7 @@ bool is_load(const std::string& name) {
 }
 
 /// All values that a column had.
-std::set<double> values_of(const std::string& name, const FitState& fit) {
+std::set<double> values_of(const std::string& name, const fitting::FitState& fit) {
   std::set<double> values;
   for (const DrivenRecording& recording : fit.recordings) {
     for (const Covariate& one : recording.drive.covariates) {
@@ -200,13 +200,13 @@ ColumnInTime as_recorded(const Covariate& column, const MotionRows& drive) {
   return result;
 }
 
-void learn_columns(const FitState& fit, const std::vector<std::string>& variables,
+void learn_columns(const fitting::FitState& fit, const std::vector<std::string>& variables,
                    PlanWorld& world) {
-  const auto& reserved = reserved_variables();
+  const auto& reserved = recording::reserved_variables();
   for (const Covariate& column : fit.recordings.back().drive.covariates) {
     const std::string& name = column.name;
     if (std::find(reserved.begin(), reserved.end(), name) != reserved.end()) continue;
-    if (is_own_column(fit.model.robot, name) || column.values.empty()) continue;
+    if (drive::is_own_column(fit.model.robot, name) || column.values.empty()) continue;
     const std::set<double> distinct = values_of(name, fit);
     const bool asked = std::find(variables.begin(), variables.end(), name) != variables.end();
     if (asked && distinct.size() > 1 && name != "temperature_C" &&
@@ -220,9 +220,9 @@ void learn_columns(const FitState& fit, const std::vector<std::string>& variable
 
 }  // namespace
 
-PlanWorld recorded_world(const FitState& fit, const std::vector<std::string>& variables,
+PlanWorld recorded_world(const fitting::FitState& fit, const std::vector<std::string>& variables,
                          const std::string& start, double max_speed) {
-  const std::map<std::string, Vector2> places = landmark_places(fit);
+  const std::map<std::string, Vector2> places = fitting::landmark_places(fit);
   const Exits exits = routes_of(fit, places);
   const std::string first = start_of(fit, exits, start);
   PlanWorld world;
@@ -244,4 +244,4 @@ PlanWorld recorded_world(const FitState& fit, const std::vector<std::string>& va
   return world;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

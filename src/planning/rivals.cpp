@@ -10,7 +10,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::planning {
 namespace {
 
 bool is_among(const Effect& effect, const std::vector<Effect>& effects) {
@@ -50,7 +50,7 @@ std::vector<Effect> open_rivals(const Diagnosis& diagnosis) {
 
 /// Whether what is missing is a rival by another name: most of one's trace is the other's.
 bool is_another_name(const Finding& missing, const std::vector<Effect>& rivals,
-                     const ScoreTest& tests) {
+                     const criticism::ScoreTest& tests) {
   constexpr double kMostly = 0.7;
   const Eigen::MatrixXd M = tests.projected(tests.columns(missing.effect));
   const Eigen::VectorXd trace =
@@ -58,8 +58,8 @@ bool is_another_name(const Finding& missing, const std::vector<Effect>& rivals,
   return std::any_of(rivals.begin(), rivals.end(), [&](const Effect& rival) {
     const Eigen::MatrixXd R = tests.projected(tests.columns(rival));
     const Eigen::VectorXd own = R.rowwise().sum();
-    return (R * least_squares(R, trace)).norm() >= kMostly * trace.norm() ||
-           (M * least_squares(M, own)).norm() >= kMostly * own.norm();
+    return (R * linalg::least_squares(R, trace)).norm() >= kMostly * trace.norm() ||
+           (M * linalg::least_squares(M, own)).norm() >= kMostly * own.norm();
   });
 }
 
@@ -83,7 +83,7 @@ void check_plan_options(const PlanOptions& options) {
 }
 
 RivalSubject rivals_of(const Diagnosis& diagnosis, const PlanOptions& options) {
-  const FitState& fit = *diagnosis.under->fit.state;
+  const fitting::FitState& fit = *diagnosis.under->fit.state;
   RivalSubject subject;
   if (options.rivals.empty()) {
     subject.rivals = open_rivals(diagnosis);
@@ -105,7 +105,7 @@ RivalSubject rivals_of(const Diagnosis& diagnosis, const PlanOptions& options) {
   for (const Effect& one : fit.model.effects) {
     (speaks_of_sessions(one) ? subject.own : subject.beside).push_back(one);
   }
-  ScoreTest tests(fit);
+  criticism::ScoreTest tests(fit);
   for (const Finding& one : diagnosis.findings) {
     if (one.joint.empty() || is_among(one.effect, subject.rivals)) continue;
     if (is_another_name(one, subject.rivals, tests)) continue;
@@ -113,7 +113,7 @@ RivalSubject rivals_of(const Diagnosis& diagnosis, const PlanOptions& options) {
     tests.condition_on(tests.columns(one.effect));
   }
   double most = 0.0;
-  const std::vector<Score> scores = tests.test(subject.rivals);
+  const std::vector<criticism::Score> scores = tests.test(subject.rivals);
   for (std::size_t k = 0; k < scores.size(); ++k) {
     if (scores[k].dof == 0) {
       throw std::invalid_argument(
@@ -156,4 +156,4 @@ std::vector<std::string> variables_in(const std::vector<Effect>& effects) {
   return {all.begin(), all.end()};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::planning {
 
 struct RivalSubject {
   std::vector<Effect> rivals;  ///< with the sizes that the recordings give each alone
@@ -37,4 +37,4 @@ void check_plan_options(const PlanOptions& options);
 /// That their shapes speak of.
 [[nodiscard]] std::vector<std::string> variables_in(const std::vector<Effect>& effects);
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::planning {
 
 double separation(const Eigen::MatrixXd& gram, const Question& question,
                   const std::vector<Eigen::Index>& beside, double phi) {
@@ -28,9 +28,9 @@ double power_of(const Question& question, double lambda) {
   const auto dof = static_cast<double>(question.columns.size());
   double sum = 0.0;
   for (int k = 0; k < kSizes; ++k) {
-    const double z = normal_quantile((k + 0.5) / kSizes);
+    const double z = statistics::normal_quantile((k + 0.5) / kSizes);
     const double share = std::max(0.0, 1.0 + z * question.sd_share);
-    sum += noncentral_chi2_tail(question.threshold, dof, lambda * share * share);
+    sum += statistics::noncentral_chi2_tail(question.threshold, dof, lambda * share * share);
   }
   return sum / kSizes;
 }
@@ -46,4 +46,4 @@ void want_power(Question& question, double power) {
   question.wanted = high;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

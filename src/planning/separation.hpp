@@ -17,7 +17,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::planning {
 
 /// What a drive is to tell: that an effect is there, where the others might be instead.
 struct Question {
@@ -39,4 +39,4 @@ struct Question {
 /// Fills in `wanted` for this power, of columns, share and threshold.
 void want_power(Question& question, double power);
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

@@ -15,7 +15,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::planning {
 namespace {
 
 constexpr double kLeastGain = 1e-5;  // of a score, that a leg is worth
@@ -65,7 +65,7 @@ class Search {
   [[nodiscard]] std::vector<std::optional<FoundTour>> found_by(
       const std::vector<PlannedTour>& tours, const Informing& informs) const {
     std::vector<std::optional<FoundTour>> all(tours.size());
-    parallel_for(tours.size(), [&](std::size_t k) {
+    parallel::parallel_for(tours.size(), [&](std::size_t k) {
       const DrivePlan plan = plan_of(task_.world, tours[k]);
       FoundTour found{tours[k], {}, {}};
       found.value.time = plan_duration(plan);
@@ -265,4 +265,4 @@ PlannedTour thorough_tour(const PlanWorld& world) {
   return tour;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

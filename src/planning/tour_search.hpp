@@ -23,7 +23,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::planning {
 
 struct SearchTask {
   const PlanWorld& world;
@@ -70,4 +70,4 @@ inline constexpr std::size_t kMostLegsAlong = 24;  ///< where each value is of t
 /// Every route near the start both ways, in all manners: what no such drive tells, none does.
 [[nodiscard]] PlannedTour thorough_tour(const PlanWorld& world);
 
-}  // namespace trussmap
+}  // namespace trussmap::planning

@@ -11,19 +11,19 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 std::vector<Vector2> in_millimetres(const std::vector<Eigen::Vector2d>& metres) {
   std::vector<Vector2> result;
   result.reserve(metres.size());
-  for (const Eigen::Vector2d& p : metres) result.push_back(kMillimetres * p);
+  for (const Eigen::Vector2d& p : metres) result.push_back(geometry::kMillimetres * p);
   return result;
 }
 
 void add_cluster(Panel& panel, const std::vector<Eigen::Vector2d>& runs, const SampleMean& mean,
                  const std::string& name, const char* colour) {
-  const Vector2 centre = kMillimetres * mean.mean;
+  const Vector2 centre = geometry::kMillimetres * mean.mean;
   panel.marks.push_back({MarkKind::segments, {Vector2::Zero(), centre}, colour, 1.2, true, "", {}});
   panel.marks.push_back(
       {MarkKind::dots, in_millimetres(runs), colour, 4.5, false, name + " runs", {}});
@@ -33,7 +33,7 @@ void add_cluster(Panel& panel, const std::vector<Eigen::Vector2d>& runs, const S
 
 Panel square_panel(const SquareRuns& runs, std::size_t round, std::size_t rounds) {
   const SquareClusters clusters = square_clusters(runs);
-  const double farthest = kMillimetres * clusters.largest_offset.value;
+  const double farthest = geometry::kMillimetres * clusters.largest_offset.value;
   Panel panel;
   panel.title = fmt::format("{}systematic error {:.0f} mm",
                             rounds > 1 ? fmt::format("Round {}: ", round + 1) : "", farthest);
@@ -73,15 +73,16 @@ Panel noise_panel(const EndErrors& errors, const NoiseEstimate& estimate,
   constexpr const char* kLabels[] = {"x error [mm]", "y error [mm]", "heading error [mrad]"};
   constexpr const char* kTitles[] = {"Along and across", "Along and heading", "Across and heading"};
   const std::vector<int> pick = {across, up};
-  const double scale = kMillimetres * ellipse95_scale(2);
-  const Vector2 centre = kMillimetres * Vector2(estimate.centre(pick));
+  const double scale = geometry::kMillimetres * ellipse95_scale(2);
+  const Vector2 centre = geometry::kMillimetres * Vector2(estimate.centre(pick));
   Panel panel;
   panel.title = kTitles[across + up - 1];
   panel.x_label = kLabels[across];
   panel.y_label = kLabels[up];
   panel.zero_lines = true;
   Mark runs{MarkKind::dots, {}, colour::kSky, 3.2, false, "end errors", {}};
-  for (const Eigen::Vector3d& e : errors) runs.at.push_back(kMillimetres * Vector2(e(pick)));
+  for (const Eigen::Vector3d& e : errors)
+    runs.at.push_back(geometry::kMillimetres * Vector2(e(pick)));
   panel.marks.push_back(runs);
   panel.marks.push_back({MarkKind::polyline,
                          ellipse_outline(centre, estimate.observed(pick, pick), scale),
@@ -98,14 +99,15 @@ Panel noise_panel(const EndErrors& errors, const NoiseEstimate& estimate,
                          "95 % ellipse of the model",
                          {}});
   for (int sigma = 1; stated && sigma <= 3; ++sigma) {
-    panel.marks.push_back({MarkKind::polyline,
-                           ellipse_outline(kMillimetres * Vector2(stated->centre(pick)),
-                                           stated->modelled(pick, pick), kMillimetres * sigma),
-                           colour::kGreen,
-                           1.2,
-                           false,
-                           sigma == 1 ? "1, 2, 3 sigma by the k stated" : "",
-                           {}});
+    panel.marks.push_back(
+        {MarkKind::polyline,
+         ellipse_outline(geometry::kMillimetres * Vector2(stated->centre(pick)),
+                         stated->modelled(pick, pick), geometry::kMillimetres * sigma),
+         colour::kGreen,
+         1.2,
+         false,
+         sigma == 1 ? "1, 2, 3 sigma by the k stated" : "",
+         {}});
   }
   return panel;
 }
@@ -150,4 +152,4 @@ Figure noise_figure(const EndErrors& errors, const NoiseEstimate& estimate,
   return figure;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 /// The cw and ccw clusters with their centres of gravity and a circle through the farther one; a
 /// panel per round, all at the first one's scale. At least one round, else std::invalid_argument.
@@ -24,4 +24,4 @@ namespace trussmap {
 [[nodiscard]] Figure noise_figure(const EndErrors& errors, const NoiseEstimate& estimate,
                                   const std::optional<StatedNoise>& stated = std::nullopt);
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 using nlohmann::ordered_json;
@@ -172,4 +172,4 @@ std::string chart_csv(const Chart& chart) {
   return text;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

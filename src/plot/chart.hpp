@@ -29,7 +29,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 enum class LayerKind {
   dots,
@@ -102,4 +102,4 @@ inline constexpr std::size_t kMostMarks = 20000;
 /// Its data as CSV (RFC 4180): a column for the layer's name, then those of the layers.
 [[nodiscard]] std::string chart_csv(const Chart& chart);
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 Range range_of(int axis, const Chart& chart) {
@@ -132,4 +132,4 @@ std::pair<ChartScale, ChartScale> chart_scales(const Chart& chart, double left, 
   return {x, y};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

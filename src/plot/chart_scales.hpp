@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 /// One axis: values or categories onto pixels.
 struct ChartScale {
@@ -35,4 +35,4 @@ struct ChartScale {
                                                              double top, double right,
                                                              double bottom);
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

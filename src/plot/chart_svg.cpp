@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 constexpr double kWidth = 800.0;  // pixels
@@ -135,7 +135,7 @@ std::string Pen::ellipse(const ChartLayer& layer, std::size_t row) const {
       "fill-opacity=\"0.18\" stroke=\"{}\" stroke-width=\"1.2\"/>\n",
       px(std::max(1.5, unit * layer.columns[2].numbers[row])),
       px(std::max(1.5, unit * layer.columns[3].numbers[row])), px(at_x(layer, 0, row)),
-      px(at_y(layer, 1, row)), px(-layer.columns[4].numbers[row] * kDegrees), ink, ink);
+      px(at_y(layer, 1, row)), px(-layer.columns[4].numbers[row] * geometry::kDegrees), ink, ink);
 }
 
 std::string Pen::interval(const ChartLayer& layer, std::size_t row) const {
@@ -180,7 +180,7 @@ std::string Pen::mark(const ChartLayer& layer, std::size_t row) const {
       return fmt::format(
           "<text class=\"tick\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
           px(at_x(layer, 0, row)), px(at_y(layer, 1, row) - 7.0),
-          xml_escaped(layer.columns[2].texts[row]));
+          text::xml_escaped(layer.columns[2].texts[row]));
     case LayerKind::level:
       return rule(x.first, at_y(layer, 0, row), x.last, at_y(layer, 0, row), colour(layer, row),
                   1.5, layer.dashed);
@@ -227,7 +227,7 @@ std::string legend(const Chart& chart, double& top) {
     svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"11\" height=\"11\" fill=\"{}\"/>\n", px(x),
                        px(top), colour);
     svg += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", px(x + 16.0), px(top + 10.0),
-                       xml_escaped(name));
+                       text::xml_escaped(name));
     x += wide;
   }
   if (!entries.empty()) top += 26.0;
@@ -241,19 +241,21 @@ std::string axes(const Chart& chart, const ChartScale& x, const ChartScale& y, d
   for (const auto& [at, name] : x.ticks()) {
     if (x.categories.empty()) grid += fmt::format("M{} {}V{}", px(at), px(top), px(bottom));
     text += fmt::format("<text class=\"tick\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                        px(at), px(bottom + 16.0), xml_escaped(name));
+                        px(at), px(bottom + 16.0), text::xml_escaped(name));
   }
   for (const auto& [at, name] : y.ticks()) {
     if (y.categories.empty()) grid += fmt::format("M{} {}H{}", px(left), px(at), px(right));
-    text += fmt::format("<text class=\"tick\" x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n",
-                        px(left - 6.0), px(at + 4.0), xml_escaped(shortened(name, kLongestName)));
+    text +=
+        fmt::format("<text class=\"tick\" x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n",
+                    px(left - 6.0), px(at + 4.0), text::xml_escaped(shortened(name, kLongestName)));
   }
-  text += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                      px(0.5 * (left + right)), px(bottom + 36.0), xml_escaped(chart.x.title));
+  text +=
+      fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
+                  px(0.5 * (left + right)), px(bottom + 36.0), text::xml_escaped(chart.x.title));
   text += fmt::format(
       "<text x=\"{0}\" y=\"{1}\" text-anchor=\"middle\" transform=\"rotate(-90 {0} {1})\">{2}"
       "</text>\n",
-      px(kEdge + 4.0), px(0.5 * (top + bottom)), xml_escaped(chart.y.title));
+      px(kEdge + 4.0), px(0.5 * (top + bottom)), text::xml_escaped(chart.y.title));
   return fmt::format("<path class=\"grid\" d=\"{}\"/>\n", grid) + text;
 }
 
@@ -289,11 +291,11 @@ std::string draw_chart(const Chart& chart) {
              "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
              "<clipPath id=\"{11}\"><rect x=\"{5}\" y=\"{6}\" width=\"{7}\" height=\"{8}\"/>"
              "</clipPath>\n<text class=\"title\" x=\"{9}\" y=\"{10}\">{2}</text>\n",
-             px(kWidth), px(bottom + 50.0), xml_escaped(chart.title), xml_escaped(chart.caption),
-             kStyle, px(left), px(top), px(right - left), px(bottom - top), px(kEdge),
-             px(kEdge + 14.0), clip) +
+             px(kWidth), px(bottom + 50.0), text::xml_escaped(chart.title),
+             text::xml_escaped(chart.caption), kStyle, px(left), px(top), px(right - left),
+             px(bottom - top), px(kEdge), px(kEdge + 14.0), clip) +
          entries + axes(chart, x, y, left, top, right, bottom) + "<g clip-path=\"url(#" + clip +
          ")\">\n" + plot + "</g>\n</svg>\n";
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

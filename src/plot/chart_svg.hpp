@@ -9,10 +9,10 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 /// The picture as SVG. Text is escaped; same input, same bytes. Throws std::invalid_argument like
 /// chart_json.
 [[nodiscard]] std::string draw_chart(const Chart& chart);
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 /// A compass that reads beside where north is.
@@ -127,4 +127,4 @@ std::span<const EffectDrawing> drawings_of_headings() {
   return kHeadingDrawings;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

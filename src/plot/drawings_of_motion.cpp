@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 void wheelbase(Sketch& s) {
@@ -287,4 +287,4 @@ std::span<const EffectDrawing> drawings_of_motion() {
   return kMotionDrawings;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

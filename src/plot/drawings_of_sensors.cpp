@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "plot/effect_drawings.hpp"
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 void sighting_delay(Sketch& s) {
@@ -141,4 +141,4 @@ std::span<const EffectDrawing> drawings_of_sensors() {
   return kSensorDrawings;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

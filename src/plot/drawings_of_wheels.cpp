@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 constexpr double kFloor = 140.0;
@@ -191,4 +191,4 @@ std::span<const EffectDrawing> drawings_of_wheels() {
   return kWheelDrawings;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

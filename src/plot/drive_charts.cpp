@@ -16,7 +16,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 /// Strokes seen from above: the page's x is to the right, its y ahead.
@@ -70,7 +70,7 @@ std::string caption_of(const Robot& robot) {
   if (robot.drive == DriveKind::skid_steer && robot.columns.size() > 2) {
     text += " How far the wheels of one side are apart matters nothing, and is made up.";
   }
-  if (is_of_drive(Channel::steer, robot)) {
+  if (effects::is_of_drive(Channel::steer, robot)) {
     text +=
         " Dashed: the steered wheel at its smallest and largest angle. Grey wheels are not read, "
         "and how far they are apart is made up.";
@@ -81,7 +81,7 @@ std::string caption_of(const Robot& robot) {
 /// Half of what the picture shows, m.
 double reach_of(const Robot& robot, const std::vector<WheelPlace>& places,
                 const std::vector<Vector2>& others) {
-  double reach = is_of_drive(Channel::steer, robot) ? 0.6 * robot.length : 0.0;
+  double reach = effects::is_of_drive(Channel::steer, robot) ? 0.6 * robot.length : 0.0;
   for (const WheelPlace& one : places) reach = std::max(reach, std::hypot(one.x, one.y));
   for (const Vector2& one : others) reach = std::max(reach, one.norm());
   return reach > 0.0 ? reach : 1.0;
@@ -171,14 +171,14 @@ Chart wheels_chart(const Robot& robot, const std::optional<Range>& steered) {
   chart.x = {.title = "to the right [m]"};
   chart.y = {.title = "ahead [m]"};
   chart.equal_aspect = true;
-  const std::vector<WheelPlace> places = wheel_places(robot);
+  const std::vector<WheelPlace> places = effects::wheel_places(robot);
   if (places.empty()) return chart;
 
   const std::vector<Vector2> idle = idle_wheels(robot);
   const double reach = reach_of(robot, places, idle);
   const double length = 0.45 * reach;
   wheel_layers(robot, places, idle, length, steered).add_to(chart, 0.12 * reach);
-  const bool steers = is_of_drive(Channel::steer, robot);
+  const bool steers = effects::is_of_drive(Channel::steer, robot);
   const double front = steers ? robot.length : reach;
   const double back = steers ? 0.0 : reach;
   chart.x.range = Range{-reach - 2.0 * length, reach + 2.0 * length};
@@ -202,7 +202,7 @@ ChartLayer share_layer(const std::string& name, const std::string& colour, const
   for (std::size_t k = 0; k < of.size(); ++k) {
     for (const double edge : {0.0, 1.0}) {
       const double angle = shares.low + (static_cast<double>(k) + edge) * shares.wide;
-      layer.columns[0].numbers.push_back(kDegrees * angle);
+      layer.columns[0].numbers.push_back(geometry::kDegrees * angle);
       layer.columns[1].numbers.push_back(std::min(0.0, sign * of[k]));
       layer.columns[2].numbers.push_back(std::max(0.0, sign * of[k]));
     }
@@ -260,4 +260,4 @@ std::optional<Steering> steering_of(const std::vector<DrivenRecording>& recordin
   return steering;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

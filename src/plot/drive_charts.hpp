@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 /// `steered`: the smallest and the largest angle, rad, of a robot that steers. Without layers where
 /// nobody said where the wheels are.
@@ -28,4 +28,4 @@ struct Steering {
 };
 [[nodiscard]] std::optional<Steering> steering_of(const std::vector<DrivenRecording>& recordings);
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

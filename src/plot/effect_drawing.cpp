@@ -5,6 +5,8 @@
 #include "trussmap/workbench.hpp"
 
 namespace trussmap {
+using namespace plot;
+
 namespace {
 
 const EffectDrawing* drawing_named(std::string_view name) {
@@ -18,9 +20,9 @@ const EffectDrawing* drawing_named(std::string_view name) {
 }
 
 /// The catalogue's plainest effect of a channel: one that acts everywhere alike, where it has one.
-const CatalogueRecord* plainest(Channel channel) {
-  const CatalogueRecord* found = nullptr;
-  for (const CatalogueRecord& one : catalogue_records()) {
+const effects::CatalogueRecord* plainest(Channel channel) {
+  const effects::CatalogueRecord* found = nullptr;
+  for (const effects::CatalogueRecord& one : effects::catalogue_records()) {
     if (one.entry.channel != channel) continue;
     if (found == nullptr ||
         (found->entry.pattern.front() != "1" && one.entry.pattern.front() == "1")) {
@@ -33,7 +35,7 @@ const CatalogueRecord* plainest(Channel channel) {
 }  // namespace
 
 std::string effect_drawing(const Effect& effect) {
-  const CatalogueRecord* record = find_record(effect.name);
+  const effects::CatalogueRecord* record = effects::find_record(effect.name);
   if (record == nullptr) record = plainest(effect.channel);
   const EffectDrawing* drawing = record == nullptr ? nullptr : drawing_named(record->drawing.of);
   if (drawing == nullptr) return "";

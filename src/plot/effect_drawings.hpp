@@ -9,7 +9,7 @@
 #include <span>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 struct EffectDrawing {
   std::string_view name;  ///< of an effect of the catalogue, or what its file says
@@ -23,4 +23,4 @@ struct EffectDrawing {
 [[nodiscard]] std::span<const EffectDrawing> drawings_of_headings();
 [[nodiscard]] std::span<const EffectDrawing> drawings_of_sensors();
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

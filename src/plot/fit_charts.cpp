@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 constexpr std::size_t kMostLegs = 2000;  // of a chart
@@ -58,7 +58,7 @@ Chart response_chart(const std::string& id, const std::string& title, const std:
                      const std::vector<NamedCurve>& rivals) {
   const ResponseAxes axes = axes_of(response);
   const double across = axes.variable_factor;
-  const ShownUnit up = shown_unit(response.unit);
+  const wording::ShownUnit up = wording::shown_unit(response.unit);
   Chart chart;
   chart.id = id;
   chart.title = title;
@@ -174,7 +174,7 @@ Chart legs_chart(const std::string& id, const std::vector<LegMisfit>& legs, LegE
       shown_legs.size() < legs.size()
           ? fmt::format(" ({} of {} legs, the worst among them)", shown_legs.size(), legs.size())
           : "");
-  const ShownUnit unit = shown_unit(stretch ? "" : "rad");
+  const wording::ShownUnit unit = wording::shown_unit(stretch ? "" : "rad");
   chart.x.title = "time [s]";
   chart.y = {
       .title = std::string(stretch ? "stretch" : "orientation") + " error [" + unit.name + "]",
@@ -221,7 +221,7 @@ Chart worst_chart(const std::string& id, const std::vector<LegMisfit>& legs, std
     chi2.numbers.push_back(leg.chi2);
     values.numbers.push_back(leg.dof);
     stretch.numbers.push_back(100.0 * leg.stretch_error);
-    turned.numbers.push_back(kDegrees * leg.orientation_error);
+    turned.numbers.push_back(geometry::kDegrees * leg.orientation_error);
   }
   make_unique(name.texts);
   chart.y.categories = name.texts;
@@ -232,4 +232,4 @@ Chart worst_chart(const std::string& id, const std::vector<LegMisfit>& legs, std
   return chart;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -24,7 +24,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 /// The strongest bars are drawn one by one (the others as one faint net). `loudest` is the force
 /// that has the strongest colour.
@@ -111,4 +111,4 @@ enum class LegError { stretch, orientation };
 [[nodiscard]] Chart worst_chart(const std::string& id, const std::vector<LegMisfit>& legs,
                                 std::size_t count);
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 Chart ladder_chart(const std::string& id, const std::vector<LadderStep>& steps, double floor) {
   Chart chart;
@@ -21,7 +21,7 @@ Chart ladder_chart(const std::string& id, const std::vector<LadderStep>& steps, 
   ChartColumn misfit{"chi\u00b2 per degree of freedom"};
   for (const LadderStep& step : steps) {
     name.texts.push_back(step.name);
-    error.numbers.push_back(kMillimetres * step.arrival_rms);
+    error.numbers.push_back(geometry::kMillimetres * step.arrival_rms);
     misfit.numbers.push_back(step.chi2 / std::max(1, step.dof));
   }
   make_unique(name.texts);  // an effect that was added twice has two places on the axis
@@ -30,7 +30,7 @@ Chart ladder_chart(const std::string& id, const std::vector<LadderStep>& steps, 
   for (std::size_t k = 0; k < steps.size(); ++k) {
     if (!steps[k].predicted_rms) continue;
     of.texts.push_back(name.texts[k]);
-    predicted.numbers.push_back(kMillimetres * *steps[k].predicted_rms);
+    predicted.numbers.push_back(geometry::kMillimetres * *steps[k].predicted_rms);
   }
   chart.y.categories = name.texts;
   chart.height = bars_height(steps.size());
@@ -38,7 +38,7 @@ Chart ladder_chart(const std::string& id, const std::vector<LadderStep>& steps, 
   if (floor > 0.0) {
     chart.layers.push_back({LayerKind::upright,
                             "noise alone",
-                            {{"noise alone [mm]", {kMillimetres * floor}}},
+                            {{"noise alone [mm]", {geometry::kMillimetres * floor}}},
                             "ink",
                             0.0,
                             true});
@@ -55,4 +55,4 @@ Chart ladder_chart(const std::string& id, const std::vector<LadderStep>& steps, 
   return chart;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

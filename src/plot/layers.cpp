@@ -9,7 +9,7 @@
 #include <cmath>
 #include <map>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 std::vector<std::size_t> thinned(std::size_t count, std::size_t most) {
   std::vector<std::size_t> kept;
@@ -65,7 +65,7 @@ ChartLayer ellipse_layer(const std::string& legend, const std::vector<PlacedElli
       colour};
   const double scale = ellipse95_scale(2);
   for (const PlacedEllipse& one : ellipses) {
-    const PlanarModes axes = planar_modes(one.covariance);
+    const linalg::PlanarModes axes = linalg::planar_modes(one.covariance);
     const double larger = axes.eigenvalues[1];
     if (!(larger > 0.0)) continue;
     const Vector2 along = axes.eigenvectors.col(1);
@@ -79,4 +79,4 @@ ChartLayer ellipse_layer(const std::string& legend, const std::vector<PlacedElli
   return layer;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 inline constexpr double kNormal95 = 1.96;  ///< half a 95 % interval, in standard deviations
 
@@ -40,4 +40,4 @@ struct PlacedEllipse {
                                        const std::vector<PlacedEllipse>& ellipses,
                                        const std::string& colour);
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

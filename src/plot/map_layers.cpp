@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 constexpr std::size_t kMostLandmarks = 200;  // drawn
@@ -97,4 +97,4 @@ void add_landmarks(Chart& chart, const FittedMap& map) {
   if (!names.columns[2].texts.empty()) chart.layers.push_back(std::move(names));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 /// Routes that are drawn one by one; the others are one faint net.
 inline constexpr std::size_t kMostBars = 250;
@@ -30,4 +30,4 @@ using Places = std::map<std::string, Vector2>;
 /// With their ellipses, and where they were surveyed; those least sure where they are many.
 void add_landmarks(Chart& chart, const FittedMap& map);
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 constexpr std::size_t kMostNamesDrawn = 80;  // beyond that names only clutter
@@ -68,7 +68,7 @@ double round_length(double length) {
 
 std::string header(const MapPicture& picture, const PictureFrame& view) {
   std::string svg = fmt::format("<text class=\"title\" x=\"{}\" y=\"28\">{}</text>\n",
-                                kPictureMargin, xml_escaped(picture.title));
+                                kPictureMargin, text::xml_escaped(picture.title));
   double x = kPictureMargin;
   const auto entry = [&](const std::string& mark, const char* label, double width) {
     svg += fmt::format(
@@ -187,14 +187,14 @@ std::string draw_map(const MapPicture& picture) {
   for (int k = 0; picture.names && count <= kMostNamesDrawn && k < picture.map.landmarks(); ++k) {
     body += fmt::format("<text class=\"name\" x=\"{:.2f}\" y=\"{:.2f}\">{}</text>\n",
                         view.x(after(k)) + 6.0, view.y(after(k)) - 6.0,
-                        xml_escaped(picture.map.landmark(k).name));
+                        text::xml_escaped(picture.map.landmark(k).name));
   }
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
              "width=\"{0:.0f}\" height=\"{1:.0f}\" role=\"img\">\n<title>{2}</title>\n"
              "{3}<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-             kPictureWidth, view.height(), xml_escaped(picture.title), kMapStyle) +
+             kPictureWidth, view.height(), text::xml_escaped(picture.title), kMapStyle) +
          header(picture, view) + body + "</svg>\n";
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 struct MapPicture {
   std::string title;
@@ -38,4 +38,4 @@ struct MapPicture {
 /// The picture as SVG text; names are escaped. 800 pixels wide.
 [[nodiscard]] std::string draw_map(const MapPicture& picture);
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 constexpr std::size_t kMostPoints = 4000;  // of all paths
@@ -138,4 +138,4 @@ Chart path_chart(const std::vector<BuiltPath>& paths) {
   return chart;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

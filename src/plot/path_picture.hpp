@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 void include_paths(const std::vector<BuiltPath>& paths, PictureFrame& frame);
 
@@ -23,4 +23,4 @@ void include_paths(const std::vector<BuiltPath>& paths, PictureFrame& frame);
 
 [[nodiscard]] Chart path_chart(const std::vector<BuiltPath>& paths);
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 inline constexpr double kPictureWidth = 800.0;  // pixels
 inline constexpr double kPictureMargin = 40.0;
@@ -45,4 +45,4 @@ class PictureFrame {
   double height_ = 0.0;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

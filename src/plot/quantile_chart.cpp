@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 constexpr std::size_t kMostQuantiles = 120;  // of a source
 constexpr std::size_t kFewest = 5;           // values that make a line
 
 double normal_order_statistic(std::size_t k, std::size_t count) {
-  return normal_quantile((static_cast<double>(k) + 0.5) / static_cast<double>(count));
+  return statistics::normal_quantile((static_cast<double>(k) + 0.5) / static_cast<double>(count));
 }
 
 /// Places in a sorted sample: all, or some evenly spread over the axis of quantiles, both ends
@@ -28,7 +28,7 @@ std::vector<std::size_t> drawn_places(std::size_t count) {
   for (std::size_t k = 0; k < kMostQuantiles; ++k) {
     const double z =
         end * (2.0 * static_cast<double>(k) / static_cast<double>(kMostQuantiles - 1) - 1.0);
-    const double share = normal_p_value(-z);
+    const double share = statistics::normal_p_value(-z);
     const auto place = static_cast<std::size_t>(std::clamp(
         std::floor(share * static_cast<double>(count)), 0.0, static_cast<double>(count - 1)));
     if (places.empty() || places.back() != place) places.push_back(place);
@@ -111,7 +111,8 @@ Chart histogram_chart(const std::string& id, const std::string& title,
   for (int k = 0; k < kSteps; ++k) {
     const double from = kStep * (k - kReach);
     // normal_p_value(x): the share beyond x.
-    const double within = normal_p_value(from) - normal_p_value(from + kStep);
+    const double within =
+        statistics::normal_p_value(from) - statistics::normal_p_value(from + kStep);
     const double share = 100.0 * counts[static_cast<std::size_t>(k)] / all;
     for (const double x : {from, from + kStep}) {
       normal.columns[0].numbers.push_back(x);
@@ -128,4 +129,4 @@ Chart histogram_chart(const std::string& id, const std::string& title,
   return chart;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

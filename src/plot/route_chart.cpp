@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 namespace {
 
@@ -157,7 +157,7 @@ void add_places(Chart& chart, const std::vector<Effect>& effects) {
                    {{"x [m]"}, {"y [m]"}, {"radius [m]"}, {""}, {""}, {"effect"}},
                    "bad"};
   for (const Effect& effect : effects) {
-    const std::optional<Vector2> place = place_of(effect);
+    const std::optional<Vector2> place = effects::place_of(effect);
     if (!place) continue;
     const std::optional<double> radius = effect.shape.front().parameter("r");
     if (!radius || !(std::abs(*radius) > 0.0)) continue;
@@ -171,4 +171,4 @@ void add_places(Chart& chart, const std::vector<Effect>& effects) {
   chart.layers.push_back(std::move(rings));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

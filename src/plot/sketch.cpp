@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 const char* colour_of(Ink ink) {
@@ -39,14 +39,14 @@ std::string stroke_of(Ink ink) {
 }
 
 double direction_of(Spot from, Spot to) {
-  return kDegrees * std::atan2(from.y - to.y, to.x - from.x);
+  return geometry::kDegrees * std::atan2(from.y - to.y, to.x - from.x);
 }
 
 }  // namespace
 
 Spot beside(Spot from, double direction, double distance) {
-  return {from.x + distance * std::cos(direction / kDegrees),
-          from.y - distance * std::sin(direction / kDegrees)};
+  return {from.x + distance * std::cos(direction / geometry::kDegrees),
+          from.y - distance * std::sin(direction / geometry::kDegrees)};
 }
 
 Sketch& Sketch::path(const std::string& d, Ink ink, std::string_view more) {
@@ -99,7 +99,7 @@ Sketch& Sketch::arc(Spot centre, double radius, double from, double to, Ink ink)
 
 Sketch& Sketch::arc_arrow(Spot centre, double radius, double from, double to, Ink ink) {
   const double along = to > from ? 1.0 : -1.0;
-  const double back = along * 6.0 / radius * kDegrees;
+  const double back = along * 6.0 / radius * geometry::kDegrees;
   arc(centre, radius, from, to - back, ink);
   return head(beside(centre, to, radius), to + along * 90.0 - back * 0.6, ink);
 }
@@ -131,7 +131,7 @@ Sketch& Sketch::text(Spot at, std::string_view words, Ink ink, std::string_view 
   marks_ += fmt::format(
       "<text x=\"{:.1f}\" y=\"{:.1f}\" font-family=\"system-ui, Liberation Sans, sans-serif\" "
       "font-size=\"12\" text-anchor=\"{}\" fill=\"{}\">{}</text>\n",
-      at.x, at.y, anchor, colour_of(shown), xml_escaped(std::string(words)));
+      at.x, at.y, anchor, colour_of(shown), text::xml_escaped(std::string(words)));
   return *this;
 }
 
@@ -205,11 +205,11 @@ Sketch& Sketch::span(Spot from, Spot to, Ink ink) {
 }
 
 std::string Sketch::svg(std::string_view title) const {
-  const std::string name = xml_escaped(std::string(title));
+  const std::string name = text::xml_escaped(std::string(title));
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
       "height=\"{1:.0f}\" role=\"img\" aria-label=\"{2}\">\n<title>{2}</title>\n{3}</svg>\n",
       kWidth, kHeight, name, marks_);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

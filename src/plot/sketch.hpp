@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 enum class Ink { plain, faint, believed, real, cause };
 
@@ -79,4 +79,4 @@ class Sketch {
   std::string marks_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

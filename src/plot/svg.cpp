@@ -15,7 +15,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 constexpr double kPictureEdge = 16.0;  // pixels round the picture
@@ -109,13 +109,13 @@ std::string draw_axes(const Panel& panel, const View& view) {
   const double middle_y = view.top + 0.5 * view.height;
   const double label_x = view.left - kLeftAxis + 14.0;
   text += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", px(middle_x),
-                      px(bottom + 36.0), xml_escaped(panel.x_label));
+                      px(bottom + 36.0), text::xml_escaped(panel.x_label));
   text += fmt::format(
       "<text x=\"{0}\" y=\"{1}\" text-anchor=\"middle\" transform=\"rotate(-90 {0} "
       "{1})\">{2}</text>\n",
-      px(label_x), px(middle_y), xml_escaped(panel.y_label));
+      px(label_x), px(middle_y), text::xml_escaped(panel.y_label));
   text += fmt::format("<text class=\"panel\" x=\"{}\" y=\"{}\">{}</text>\n", px(view.left),
-                      px(view.top - 9.0), xml_escaped(panel.title));
+                      px(view.top - 9.0), text::xml_escaped(panel.title));
   std::string svg = fmt::format("<path class=\"grid\" d=\"{}\"/>\n", grid);
   if (panel.zero_lines) {
     std::string zero;
@@ -169,7 +169,7 @@ std::string draw_legend(const Figure& figure, double width, double& bottom) {
         svg += point_mark(mark, x + 12.0, y);
       }
       svg += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", px(x + kSymbol), px(y + 4.5),
-                         xml_escaped(mark.legend));
+                         text::xml_escaped(mark.legend));
       x += wide;
     }
   }
@@ -218,7 +218,7 @@ std::vector<double> round_ticks(const Range& range, int count) {
 std::vector<Vector2> ellipse_outline(const Vector2& centre, const Matrix2& covariance,
                                      double scale) {
   constexpr int kPoints = 96;
-  const PlanarModes modes = planar_modes(covariance);
+  const linalg::PlanarModes modes = linalg::planar_modes(covariance);
   const Vector2 axes = scale * modes.eigenvalues.cwiseMax(0.0).cwiseSqrt();
   std::vector<Vector2> outline;
   for (int k = 0; k <= kPoints; ++k) {
@@ -235,11 +235,11 @@ std::string draw_figure(const Figure& figure) {
       2.0 * kPictureEdge + figure.panel_width * static_cast<double>(figure.panels.size());
   double top = kPictureEdge + 16.0;
   std::string svg = fmt::format("<text class=\"title\" x=\"{}\" y=\"{}\">{}</text>\n",
-                                px(kPictureEdge), px(top), xml_escaped(figure.title));
+                                px(kPictureEdge), px(top), text::xml_escaped(figure.title));
   if (!figure.subtitle.empty()) {
     top += 21.0;
     svg += fmt::format("<text class=\"subtitle\" x=\"{}\" y=\"{}\">{}</text>\n", px(kPictureEdge),
-                       px(top), xml_escaped(figure.subtitle));
+                       px(top), text::xml_escaped(figure.subtitle));
   }
   top += 8.0;
   svg += draw_legend(figure, width, top);
@@ -253,8 +253,8 @@ std::string draw_figure(const Figure& figure) {
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
              "height=\"{1}\" role=\"img\">\n<title>{2}</title>\n{3}"
              "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-             px(width), px(height), xml_escaped(figure.title), kPlotStyle) +
+             px(width), px(height), text::xml_escaped(figure.title), kPlotStyle) +
          svg + "</svg>\n";
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

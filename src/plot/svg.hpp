@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 enum class MarkKind {
   dots,      ///< filled circles
@@ -84,4 +84,4 @@ inline constexpr const char* kGrey = "#9A9A9A";
 inline constexpr const char* kBlack = "#222222";
 }  // namespace colour
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 std::string px(double value) {
   const double rounded = std::round(value * 100.0) / 100.0;
@@ -17,12 +17,13 @@ std::string px(double value) {
 }
 
 std::string stroke(const Mark& mark) {
-  return fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{}", xml_escaped(mark.colour),
-                     px(mark.size), mark.dashed ? " stroke-dasharray=\"7 4\"" : "");
+  return fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{}",
+                     text::xml_escaped(mark.colour), px(mark.size),
+                     mark.dashed ? " stroke-dasharray=\"7 4\"" : "");
 }
 
 std::string point_mark(const Mark& mark, double x, double y) {
-  const std::string colour = xml_escaped(mark.colour);
+  const std::string colour = text::xml_escaped(mark.colour);
   const double r = mark.size;
   switch (mark.kind) {
     case MarkKind::dots:
@@ -69,7 +70,8 @@ std::string draw_mark(const Mark& mark, const View& view) {
       for (std::size_t k = 0; k < std::min(mark.at.size(), mark.texts.size()); ++k) {
         svg += fmt::format("<text x=\"{}\" y=\"{}\" style=\"font-size:{}px;fill:{}\">{}</text>\n",
                            px(view.to_x(mark.at[k].x()) + 7.0), px(view.to_y(mark.at[k].y()) - 6.0),
-                           px(mark.size), xml_escaped(mark.colour), xml_escaped(mark.texts[k]));
+                           px(mark.size), text::xml_escaped(mark.colour),
+                           text::xml_escaped(mark.texts[k]));
       }
       return svg;
     default:
@@ -78,4 +80,4 @@ std::string draw_mark(const Mark& mark, const View& view) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -8,7 +8,7 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 /// Pixels with two decimals, without a negative zero.
 [[nodiscard]] std::string px(double value);
@@ -41,4 +41,4 @@ struct View {
 
 [[nodiscard]] std::string draw_mark(const Mark& mark, const View& view);
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 constexpr double kPoints = 600.0;  // in all
@@ -29,7 +29,7 @@ struct Strip {
 };
 
 Strip strip_of(const std::vector<DrivenRecording>& recordings, const RowValues& values) {
-  const std::vector<double> shifts = elapsed_shifts(recordings);
+  const std::vector<double> shifts = drive::elapsed_shifts(recordings);
   const MotionRows& last = recordings.back().drive;
   const double whole = last.rows() > 0 ? last.t.back() + shifts.back() : shifts.back();
   const double share = std::max(whole / kPoints, 1e-9);
@@ -88,10 +88,11 @@ Chart chart_of(const std::string& id, const std::string& title, Strip strip,
   chart.x.title = "t [s]";
   chart.height = 70.0;
   if (!marked.chosen.empty()) {
-    chart.layers.push_back(band_over(merged(marked.chosen), "chosen", "2", strip));
+    chart.layers.push_back(band_over(recording::merged(marked.chosen), "chosen", "2", strip));
   }
   if (!marked.excluded.empty()) {
-    chart.layers.push_back(band_over(merged(marked.excluded), "excluded", "muted", strip));
+    chart.layers.push_back(
+        band_over(recording::merged(marked.excluded), "excluded", "muted", strip));
   }
   ChartLayer line{
       LayerKind::line, "", {{"t [s]", std::move(strip.t)}, {title, std::move(strip.value)}}};
@@ -144,10 +145,10 @@ std::vector<Chart> time_strips(const std::vector<DrivenRecording>& recordings,
       return RowValue([&values](const MotionRows&, std::size_t row) { return values[row]; });
     });
     if (!varies(strip)) continue;
-    strips.push_back(chart_of("strip-" + std::to_string(strips.size()), variable_in_words(one.name),
-                              std::move(strip), marked));
+    strips.push_back(chart_of("strip-" + std::to_string(strips.size()),
+                              wording::variable_in_words(one.name), std::move(strip), marked));
   }
   return strips;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

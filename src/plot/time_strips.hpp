@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::plot {
 
 /// What is marked in the strips, in their own time (elapsed_shifts).
 struct MarkedTimes {
@@ -22,4 +22,4 @@ struct MarkedTimes {
 [[nodiscard]] std::vector<Chart> time_strips(const std::vector<DrivenRecording>& recordings,
                                              const MarkedTimes& marked = {});
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

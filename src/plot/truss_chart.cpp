@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::plot {
 namespace {
 
 /// chi^2/dof at which the strongest bar has the strongest colour: noise alone looks calm.
@@ -58,7 +58,7 @@ void add_bars(Chart& chart, const Places& places, std::vector<RouteMisfit> route
     bars.columns[6].numbers.push_back(route.traversals);
     bars.columns[7].numbers.push_back(route.force);
     bars.columns[8].numbers.push_back(100.0 * route.stretch_error);
-    bars.columns[9].numbers.push_back(route.orientation_error * kDegrees);
+    bars.columns[9].numbers.push_back(route.orientation_error * geometry::kDegrees);
     bars.columns[10].numbers.push_back(route.chi2);
     bars.shade.push_back(route.force / loudest);
   }
@@ -92,4 +92,4 @@ Chart truss_chart(const std::string& id, const std::string& title, const FittedM
   return chart;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::plot

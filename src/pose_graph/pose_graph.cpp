@@ -22,7 +22,7 @@ bool semidefinite(const Eigen::Matrix<double, N, N>& matrix) {
   if (!matrix.allFinite()) return false;
   const double size = matrix.cwiseAbs().maxCoeff();
   if ((matrix - matrix.transpose()).cwiseAbs().maxCoeff() > kRounding * size) return false;
-  return symmetric_eigenvalues(matrix).minCoeff() >= -kRounding * size;
+  return linalg::symmetric_eigenvalues(matrix).minCoeff() >= -kRounding * size;
 }
 
 /// Sylvester's criterion, clear of rounding: the quick answer for nearly every edge.

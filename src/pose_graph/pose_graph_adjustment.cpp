@@ -15,13 +15,16 @@
 #include <utility>
 
 namespace trussmap {
+using namespace pose_graph;
+
 namespace {
 
 constexpr double kSame = 1e-6;        // relative difference of chi^2 below which minima are one
 constexpr double kImplausible = 4.0;  // standard deviations of chi^2 above its expectation
 constexpr std::uint64_t kLiftingSeed = 1;
 constexpr int kLooksAlike = 3;
-constexpr DescentOptions kTrial{40, 1e-8};  // a descent that only looks for a better minimum
+constexpr linalg::DescentOptions kTrial{40,
+                                        1e-8};  // a descent that only looks for a better minimum
 
 struct Start {
   std::string name;
@@ -119,7 +122,7 @@ class Search {
                              [](const Start& a, const Start& b) { return a.chi2 < b.chi2; });
   }
 
-  void try_start(Start& start, const DescentOptions& how) {
+  void try_start(Start& start, const linalg::DescentOptions& how) {
     start.tried = true;
     Descent descent = descend(system_, start.estimates, how);
     const bool first = best_start_.empty();
@@ -143,12 +146,12 @@ class Search {
     for (std::size_t k = 0; k < std::min(kNamed, loose.size()); ++k) {
       names += (k == 0 ? "" : ", ") + std::to_string(graph_.vertices[idx(loose[k])].id);
     }
-    if (loose.size() > kNamed) names += joined(" and ", loose.size() - kNamed, " more");
+    if (loose.size() > kNamed) names += text::joined(" and ", loose.size() - kNamed, " more");
     const bool one = loose.size() == 1;
     throw SolveError(
-        joined(one ? "vertex " : "vertices ", names,
-               " can still move without contradicting any measurement (measure more of ",
-               one ? "it" : "them", ", or fix ", one ? "it" : "one", ")"));
+        text::joined(one ? "vertex " : "vertices ", names,
+                     " can still move without contradicting any measurement (measure more of ",
+                     one ? "it" : "them", ", or fix ", one ? "it" : "one", ")"));
   }
 
   /// Lets other starts try to beat what was found, then makes the best exact.
@@ -189,7 +192,7 @@ class Search {
 
   [[nodiscard]] bool is_implausible() const { return excess_of(best_.chi2, dof_) > kImplausible; }
 
-  [[nodiscard]] DescentOptions final_descent() const {
+  [[nodiscard]] linalg::DescentOptions final_descent() const {
     return {options_.max_iterations, options_.tolerance};
   }
 
@@ -207,17 +210,18 @@ class Search {
     result.converged = best_.converged;
     result.start = best_start_;
     if (!best_.converged) {
-      result.warnings.push_back(joined("not converged after ", best_.iterations,
-                                       " iterations; the result is not a minimum of chi2"));
+      result.warnings.push_back(text::joined("not converged after ", best_.iterations,
+                                             " iterations; the result is not a minimum of chi2"));
     }
     if (is_implausible()) {
-      result.warnings.push_back(joined(
-          "chi2 ", short_text(best_.chi2), " is far too large for ", dof_,
+      result.warnings.push_back(text::joined(
+          "chi2 ", text::short_text(best_.chi2), " is far too large for ", dof_,
           " degrees of freedom: wrong edges, too much information claimed, or a local minimum"));
     }
     for (const auto& [name, chi2] : others_) {
-      result.warnings.push_back(joined("a start from ", name, " ends in another minimum, chi2 ",
-                                       short_text(chi2), "; the lower one is kept"));
+      result.warnings.push_back(text::joined("a start from ", name,
+                                             " ends in another minimum, chi2 ",
+                                             text::short_text(chi2), "; the lower one is kept"));
     }
     return result;
   }
@@ -253,12 +257,13 @@ std::vector<Eigen::MatrixXd> marginal_covariances(const PoseGraph& graph,
   const std::vector<std::uint8_t> held = choose_gauge(graph);
   PoseGraphSystem system(graph, held);
   system.linearise(estimates);
-  BlockSystem& H = system.normal_equations();
+  linalg::BlockSystem& H = system.normal_equations();
   try {
     if (H.unknowns() > 0) H.factorise();
-  } catch (const NotPositiveDefinite& failure) {
-    throw SolveError(joined("vertex ", graph.vertices[idx(system.vertex_of(failure.column()))].id,
-                            " can still move without contradicting any measurement"));
+  } catch (const linalg::NotPositiveDefinite& failure) {
+    throw SolveError(text::joined("vertex ",
+                                  graph.vertices[idx(system.vertex_of(failure.column()))].id,
+                                  " can still move without contradicting any measurement"));
   }
   std::vector<Eigen::MatrixXd> result;
   for (const int vertex : vertices) {
@@ -270,7 +275,7 @@ std::vector<Eigen::MatrixXd> marginal_covariances(const PoseGraph& graph,
       unit.middleRows(H.offset(vertex), size).setIdentity();
       covariance = H.solve(unit).middleRows(H.offset(vertex), size);
       for (int k = 0; k < size; ++k) {  // what is pinned within a free vertex is known exactly
-        if (is_held(held[idx(vertex)], k)) covariance(k, k) = 0.0;
+        if (estimation::is_held(held[idx(vertex)], k)) covariance(k, k) = 0.0;
       }
     }
     result.push_back(covariance);

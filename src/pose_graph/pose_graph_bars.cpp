@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace trussmap {
+namespace trussmap::pose_graph {
 namespace {
 
 /// wrap_angle, quick where there is nothing to wrap.
@@ -73,12 +73,12 @@ void PoseGraphSystem::add_stiffness(const Bar3& bar, int pair, Matrix3& B, doubl
   Matrix3 near_block = lever;
   near_block.col(2) += dx * lever.col(1) - dy * lever.col(0);
   Matrix3 coupling = -lever;
-  if ((pinned_[idx(bar.from)] | pinned_[idx(bar.to)]) != held_nothing) {
+  if ((pinned_[idx(bar.from)] | pinned_[idx(bar.to)]) != estimation::held_nothing) {
     mask(bar.from, near_block);
     mask(bar.to, B);
     for (int k = 0; k < 3; ++k) {
-      if (is_held(pinned_[idx(bar.from)], k)) coupling.row(k).setZero();
-      if (is_held(pinned_[idx(bar.to)], k)) coupling.col(k).setZero();
+      if (estimation::is_held(pinned_[idx(bar.from)], k)) coupling.row(k).setZero();
+      if (estimation::is_held(pinned_[idx(bar.to)], k)) coupling.col(k).setZero();
     }
   }
   normal_.add_diagonal(bar.from, near_block);
@@ -105,8 +105,8 @@ double PoseGraphSystem::add_bar(const Bar2& bar, int pair, const std::vector<Pos
     A << c, s, -s, c;
     const Matrix2 omega = (Matrix2() << bar.xx, bar.xy, bar.xy, bar.yy).finished();
     Matrix2 B = A.transpose() * omega * A;
-    const bool far_pinned = (pinned_[idx(bar.to)] & held_position) != 0;
-    const bool near_pinned = (pinned_[idx(bar.from)] & held_position) != 0;
+    const bool far_pinned = (pinned_[idx(bar.to)] & estimation::held_position) != 0;
+    const bool near_pinned = (pinned_[idx(bar.from)] & estimation::held_position) != 0;
     if (bar.from_pose) {
       Eigen::Matrix<double, 3, 2> lever;
       lever.topRows<2>() = B;
@@ -116,7 +116,7 @@ double PoseGraphSystem::add_bar(const Bar2& bar, int pair, const std::vector<Pos
       near_block.col(2) = dx * lever.col(1) - dy * lever.col(0);
       Eigen::Matrix<double, 3, 2> coupling = -lever;
       if (near_pinned) coupling.topRows<2>().setZero();
-      if ((pinned_[idx(bar.from)] & held_heading) != 0) coupling.row(2).setZero();
+      if ((pinned_[idx(bar.from)] & estimation::held_heading) != 0) coupling.row(2).setZero();
       mask(bar.from, near_block);
       normal_.add_diagonal(bar.from, near_block);
       if (!far_pinned) normal_.add_coupling(pair, coupling);
@@ -136,7 +136,7 @@ double PoseGraphSystem::add_bar(const Bar2& bar, int pair, const std::vector<Pos
 template <int N>
 void PoseGraphSystem::mask(int vertex, Eigen::Matrix<double, N, N>& diagonal) const {
   for (int k = 0; k < N; ++k) {
-    if (!is_held(pinned_[idx(vertex)], k)) continue;
+    if (!estimation::is_held(pinned_[idx(vertex)], k)) continue;
     diagonal.row(k).setZero();
     diagonal.col(k).setZero();
   }
@@ -187,4 +187,4 @@ double PoseGraphSystem::strain_energy(const std::vector<Pose>& estimates,
   return energy;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph

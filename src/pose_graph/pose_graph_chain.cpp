@@ -15,7 +15,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::pose_graph {
 namespace {
 
 /// For each vertex the numbers of the edges at it, in rows laid end to end.
@@ -99,7 +99,7 @@ class Chainer {
   void chain_clusters() {
     const int count = static_cast<int>(graph_.vertices.size());
     for (int v = 0; v < count; ++v) {  // clusters with held headings grow from these, all at once
-      if (is_pose(graph_.vertices[idx(v)]) && held_[idx(v)] == held_all) roots_.push_back(v);
+      if (is_pose(graph_.vertices[idx(v)]) && held_[idx(v)] == estimation::held_all) roots_.push_back(v);
     }
     for (const int v : roots_) cluster_[idx(v)] = 0;
     if (!roots_.empty()) grow(roots_, true);
@@ -127,7 +127,7 @@ class Chainer {
       }
     };
     for (const int root : roots) {
-      const bool known = (held_[idx(root)] & held_heading) != 0;
+      const bool known = (held_[idx(root)] & estimation::held_heading) != 0;
       estimates_[idx(root)] = known ? held_estimate(root) : Pose{};
       reach(root, 0.0);
     }
@@ -154,7 +154,7 @@ class Chainer {
     }
     for (std::size_t v = 0; v < held_.size(); ++v) {
       const bool point = !is_pose(graph_.vertices[v]);
-      if (!point || (held_[v] & held_position) == 0) continue;
+      if (!point || (held_[v] & estimation::held_position) == 0) continue;
       any = true;
       place_point(static_cast<int>(v), held_estimate(static_cast<int>(v)).position());
     }
@@ -253,7 +253,7 @@ class Chainer {
   /// With a held position and free headings the whole was placed anywhere.
   void shift_to_held_position() {
     for (std::size_t v = 0; v < held_.size(); ++v) {
-      if ((held_[v] & held_position) == 0) continue;
+      if ((held_[v] & estimation::held_position) == 0) continue;
       const Vector2 shift =
           held_estimate(static_cast<int>(v)).position() - estimates_[v].position();
       for (Pose& estimate : estimates_) {
@@ -299,4 +299,4 @@ double heading_information(const PoseEdge& edge) {
   return std::max(0.0, heading - mixed.dot(adjugate * mixed) / determinant);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::pose_graph {
 
 /// Which edges a pose is reached by.
 enum class Tree {
@@ -32,4 +32,4 @@ enum class Tree {
 /// Information on the heading alone, when nothing is known of the position: the Schur complement.
 [[nodiscard]] double heading_information(const PoseEdge& edge);
 
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph

@@ -8,7 +8,7 @@
 
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::pose_graph {
 namespace {
 
 /// A pose graph as levenberg_marquardt wants it.
@@ -25,31 +25,32 @@ struct Problem {
   State moved(const State& state, const Step& step) { return system.moved(state, step.nodes); }
   State placed(const State& state, const Step& step) { return moved(state, step); }
   static bool rounding(const State& state, const Step& step) {
-    return is_rounding(step.nodes, largest_coordinate(state));
+    return linalg::is_rounding(step.nodes, geometry::largest_coordinate(state));
   }
 };
 
 }  // namespace
 
-Descent descend(PoseGraphSystem& system, std::vector<Pose> start, const DescentOptions& options) {
+Descent descend(PoseGraphSystem& system, std::vector<Pose> start,
+                const linalg::DescentOptions& options) {
   Problem problem{system};
   auto [estimates, chi2, iterations, converged] =
-      levenberg_marquardt(problem, std::move(start), options);
+      linalg::levenberg_marquardt(problem, std::move(start), options);
   return {std::move(estimates), chi2, iterations, 2.0 * system.gradient().norm(), converged};
 }
 
 std::vector<Pose> fit_positions(PoseGraphSystem& system, const std::vector<Pose>& estimates) {
   Problem problem{system};
-  return relaxed(problem, estimates);
+  return linalg::relaxed(problem, estimates);
 }
 
 std::vector<int> find_loose_vertices(PoseGraphSystem& system, const std::vector<Pose>& estimates) {
-  constexpr LooseLimits kLimits{.strain = 1e-19, .stiffness = 1e-9};
+  constexpr linalg::LooseLimits kLimits{.strain = 1e-19, .stiffness = 1e-9};
   system.linearise(estimates);
   const auto strain = [&](const Eigen::VectorXd& mode) {
     return system.strain_energy(estimates, mode);
   };
-  return find_loose_nodes(system.normal_equations(), strain, kLimits);
+  return linalg::find_loose_nodes(system.normal_equations(), strain, kLimits);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::pose_graph {
 
 struct Descent {
   std::vector<Pose> estimates;
@@ -21,7 +21,7 @@ struct Descent {
 
 /// Levenberg-Marquardt. The system is left linearised at the result.
 [[nodiscard]] Descent descend(PoseGraphSystem& system, std::vector<Pose> start,
-                              const DescentOptions& options);
+                              const linalg::DescentOptions& options);
 
 /// Positions by the one linear solve that the headings leave.
 [[nodiscard]] std::vector<Pose> fit_positions(PoseGraphSystem& system,
@@ -32,4 +32,4 @@ struct Descent {
 [[nodiscard]] std::vector<int> find_loose_vertices(PoseGraphSystem& system,
                                                    const std::vector<Pose>& estimates);
 
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph

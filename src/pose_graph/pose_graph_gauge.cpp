@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::pose_graph {
 namespace {
 
 constexpr std::size_t kNamed = 3;       // vertices named per part, and
@@ -19,7 +19,7 @@ constexpr std::size_t kPartsNamed = 4;  // parts, before "and so on"
 }  // namespace
 
 std::vector<GraphPart> graph_parts(const PoseGraph& graph) {
-  DisjointSets sets(static_cast<int>(graph.vertices.size()));
+  linalg::DisjointSets sets(static_cast<int>(graph.vertices.size()));
   const auto join = [&sets](const auto& edge, int a, int b) {
     if (!edge.information.isZero(0.0)) sets.join(a, b);
   };
@@ -57,20 +57,20 @@ std::string name_vertices(const PoseGraph& graph, const GraphPart& part) {
     names += std::to_string(graph.vertices[idx(part.vertices[k])].id);
   }
   if (part.vertices.size() > kNamed) {
-    names += joined(" and ", part.vertices.size() - kNamed, " more");
+    names += text::joined(" and ", part.vertices.size() - kNamed, " more");
   }
   return names;
 }
 
 [[noreturn]] void refuse(const PoseGraph& graph, const std::vector<GraphPart>& parts) {
   const std::int64_t first = graph.vertices[idx(parts.front().vertices.front())].id;
-  std::string message =
-      joined("the graph falls into ", parts.size(), " parts that no measurement ties together: ");
+  std::string message = text::joined("the graph falls into ", parts.size(),
+                                     " parts that no measurement ties together: ");
   for (std::size_t k = 1; k < std::min(parts.size(), kPartsNamed); ++k) {
     if (k > 1) message += "; ";
     const bool one = parts[k].vertices.size() == 1;
-    message += joined(name_vertices(graph, parts[k]), one ? " is" : " are",
-                      " tied to nothing that is tied to vertex ", first);
+    message += text::joined(name_vertices(graph, parts[k]), one ? " is" : " are",
+                            " tied to nothing that is tied to vertex ", first);
   }
   if (parts.size() > kPartsNamed) message += "; and so on";
   throw SolveError(message + " (tie them by an edge, or fix a vertex of each part)");
@@ -83,10 +83,10 @@ void hold(const PoseGraph& graph, const GraphPart& part, std::vector<std::uint8_
   if (part.fixed_points == 0) {
     const int first = part.vertices.front();
     const bool whole = is_pose(graph.vertices[idx(first)]) && turns;
-    held[idx(first)] |= whole ? held_all : held_position;
+    held[idx(first)] |= whole ? estimation::held_all : estimation::held_position;
     if (whole) return;
   }
-  if (turns) held[idx(*part.first_pose)] |= held_heading;
+  if (turns) held[idx(*part.first_pose)] |= estimation::held_heading;
 }
 
 template <typename Matrix>
@@ -94,7 +94,7 @@ int rank(const Matrix& information) {
   constexpr double kZero = 1e-9;
   const double size = information.cwiseAbs().maxCoeff();
   return static_cast<int>(
-      (symmetric_eigenvalues(information).array() > kZero * kZero * size).count());
+      (linalg::symmetric_eigenvalues(information).array() > kZero * kZero * size).count());
 }
 
 }  // namespace
@@ -105,9 +105,9 @@ std::vector<std::uint8_t> choose_gauge(const PoseGraph& graph) {
                                  [](const GraphPart& part) { return !part.is_fixed(); });
   if (parts.size() > 1 && loose) refuse(graph, parts);
 
-  std::vector<std::uint8_t> held(graph.vertices.size(), held_nothing);
+  std::vector<std::uint8_t> held(graph.vertices.size(), estimation::held_nothing);
   for (std::size_t v = 0; v < held.size(); ++v) {
-    if (graph.vertices[v].fixed) held[v] = held_all;
+    if (graph.vertices[v].fixed) held[v] = estimation::held_all;
   }
   for (const GraphPart& part : parts) hold(graph, part, held);
   return held;
@@ -116,8 +116,8 @@ std::vector<std::uint8_t> choose_gauge(const PoseGraph& graph) {
 int count_unknowns(const PoseGraph& graph, const std::vector<std::uint8_t>& held) {
   int unknowns = 0;
   for (std::size_t v = 0; v < held.size(); ++v) {
-    if ((held[v] & held_position) == 0) unknowns += 2;
-    if (is_pose(graph.vertices[v]) && (held[v] & held_heading) == 0) unknowns += 1;
+    if ((held[v] & estimation::held_position) == 0) unknowns += 2;
+    if (is_pose(graph.vertices[v]) && (held[v] & estimation::held_heading) == 0) unknowns += 1;
   }
   return unknowns;
 }
@@ -130,4 +130,4 @@ int count_measurements(const PoseGraph& graph) {
   return count;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph

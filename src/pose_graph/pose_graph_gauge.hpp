@@ -22,7 +22,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::pose_graph {
 
 /// Vertices that measurements tie together.
 struct GraphPart {
@@ -47,4 +47,4 @@ struct GraphPart {
 /// Number of independent measured values: the ranks of all information matrices.
 [[nodiscard]] int count_measurements(const PoseGraph& graph);
 
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph

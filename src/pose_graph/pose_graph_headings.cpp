@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::pose_graph {
 namespace {
 
 constexpr int kRewindings = 5;
@@ -60,7 +60,7 @@ void HeadingSystem::span(const PoseGraph& graph, const std::vector<std::uint8_t>
   for (std::size_t v = 0; v < count; ++v) {
     if (!is_pose(graph.vertices[v])) {
       fixed_[v] = true;
-    } else if ((held[v] & held_heading) != 0) {
+    } else if ((held[v] & estimation::held_heading) != 0) {
       start(v);
     }
   }
@@ -72,7 +72,7 @@ void HeadingSystem::span(const PoseGraph& graph, const std::vector<std::uint8_t>
   }
 }
 
-BlockSystem HeadingSystem::lay_out(int size) const {
+linalg::BlockSystem HeadingSystem::lay_out(int size) const {
   std::vector<int> sizes;
   sizes.reserve(fixed_.size());
   for (const bool fixed : fixed_) sizes.push_back(fixed ? 0 : size);
@@ -99,7 +99,7 @@ std::vector<Pose> HeadingSystem::fit(const std::vector<Pose>& estimates) {
     for (const Link& link : links_) {
       const double off =
           result[idx(link.to)].heading - result[idx(link.from)].heading - link.measured;
-      const double pull = link.information * std::remainder(off, kFullTurn);
+      const double pull = link.information * std::remainder(off, geometry::kFullTurn);
       if (!fixed_[idx(link.from)]) step[angles_->offset(link.from)] += pull;
       if (!fixed_[idx(link.to)]) step[angles_->offset(link.to)] -= pull;
     }
@@ -117,7 +117,7 @@ std::vector<Pose> HeadingSystem::fit(const std::vector<Pose>& estimates) {
 }
 
 std::vector<Pose> HeadingSystem::relax(const std::vector<Pose>& estimates) {
-  BlockSystem system = lay_out(2);
+  linalg::BlockSystem system = lay_out(2);
   if (system.unknowns() == 0) return estimates;
   Eigen::VectorXd u = Eigen::VectorXd::Zero(system.unknowns());
   const auto unit = [&estimates](int v) {
@@ -151,7 +151,7 @@ std::vector<int> HeadingSystem::windings(const std::vector<Pose>& estimates) con
   const auto turns_of = [&estimates](const Link& link) {
     const double off =
         estimates[idx(link.to)].heading - estimates[idx(link.from)].heading - link.measured;
-    return static_cast<int>(std::lround(off / kFullTurn));
+    return static_cast<int>(std::lround(off / geometry::kFullTurn));
   };
   std::vector<int> excess(estimates.size(), 0);  // whole turns that a heading has too many
   for (const Branch& branch : tree_) {
@@ -171,4 +171,4 @@ std::vector<int> HeadingSystem::windings(const std::vector<Pose>& estimates) con
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph

@@ -26,7 +26,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::pose_graph {
 
 class HeadingSystem {
  public:
@@ -55,14 +55,14 @@ class HeadingSystem {
   };
 
   void span(const PoseGraph& graph, const std::vector<std::uint8_t>& held);
-  [[nodiscard]] BlockSystem lay_out(int size) const;
+  [[nodiscard]] linalg::BlockSystem lay_out(int size) const;
 
-  std::vector<Link> links_;      ///< edges with heading information
-  std::vector<NodePair> pairs_;  ///< of the links
-  std::vector<bool> fixed_;      ///< per vertex: heading not to be found here
+  std::vector<Link> links_;              ///< edges with heading information
+  std::vector<linalg::NodePair> pairs_;  ///< of the links
+  std::vector<bool> fixed_;              ///< per vertex: heading not to be found here
   std::vector<int> order_;
   std::vector<Branch> tree_;  ///< a spanning forest, roots first
-  std::optional<BlockSystem> angles_;
+  std::optional<linalg::BlockSystem> angles_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph

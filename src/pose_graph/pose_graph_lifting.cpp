@@ -13,7 +13,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::pose_graph {
 namespace {
 
 constexpr int kRank = 3;
@@ -87,8 +87,8 @@ class Lifting {
   }
 
  private:
-  static std::vector<NodePair> pairs_of(const PoseGraph& graph) {
-    std::vector<NodePair> pairs;
+  static std::vector<linalg::NodePair> pairs_of(const PoseGraph& graph) {
+    std::vector<linalg::NodePair> pairs;
     for (const PoseEdge& e : graph.pose_edges) pairs.push_back({e.from, e.to});
     for (const PointEdge& e : graph.point_edges) pairs.push_back({e.pose, e.point});
     for (const DisplacementEdge& e : graph.displacement_edges) pairs.push_back({e.from, e.to});
@@ -99,7 +99,7 @@ class Lifting {
     std::vector<int> result;
     for (std::size_t v = 0; v < held_.size(); ++v) {
       const bool pose = is_pose(graph_.vertices[v]);
-      const std::uint8_t whole = pose ? held_all : held_position;
+      const std::uint8_t whole = pose ? estimation::held_all : estimation::held_position;
       result.push_back((held_[v] & whole) == whole ? 0 : (pose ? 4 : 2));
     }
     return result;
@@ -161,9 +161,9 @@ class Lifting {
   void hold_halves() {
     const Eigen::VectorXd diagonal = system_.diagonal();
     for (int v = 0; v < static_cast<int>(held_.size()); ++v) {
-      if (system_.size(v) != 4 || held_[idx(v)] == held_nothing) continue;
+      if (system_.size(v) != 4 || held_[idx(v)] == estimation::held_nothing) continue;
       const Eigen::Vector4d at = constant(v);
-      const bool heading = (held_[idx(v)] & held_heading) != 0;
+      const bool heading = (held_[idx(v)] & estimation::held_heading) != 0;
       const int offset = system_.offset(v);
       Eigen::Vector4d weights = kHoldingWeight * diagonal.segment<4>(offset);
       (heading ? weights.tail<2>() : weights.head<2>()).setZero();
@@ -269,16 +269,16 @@ class Lifting {
       const Complex p = (complex_row(pose ? at + 2 : at) * u)(0);
       result[k] = {p.real(), p.imag(), pose ? std::arg((complex_row(at) * u)(0)) : 0.0};
       const Pose held = graph_.vertices[k].estimate.value_or(Pose{});
-      if (pose && (held_[k] & held_heading) != 0) result[k].heading = held.heading;
-      if (pose && (held_[k] & held_position) != 0) result[k] = {held.x, held.y, result[k].heading};
+      if (pose && (held_[k] & estimation::held_heading) != 0) result[k].heading = held.heading;
+      if (pose && (held_[k] & estimation::held_position) != 0) result[k] = {held.x, held.y, result[k].heading};
     }
     return result;
   }
 
   const PoseGraph& graph_;
   const std::vector<std::uint8_t>& held_;
-  std::vector<NodePair> pairs_;
-  BlockSystem system_;
+  std::vector<linalg::NodePair> pairs_;
+  linalg::BlockSystem system_;
   Eigen::VectorXd load_;  ///< of the first dimension; what is held lies in it
 };
 
@@ -290,4 +290,4 @@ std::vector<Pose> solve_lifted(const PoseGraph& graph, const std::vector<std::ui
   return Lifting(graph, held, order).solve(seed, enough);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph

@@ -25,7 +25,7 @@
 #include <functional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::pose_graph {
 
 /// Estimates with headings and positions of the lifted minimum; held parts stand as they are held.
 /// `order`: of elimination, of all vertices. Every now and then `enough` is shown what the search
@@ -34,4 +34,4 @@ namespace trussmap {
     const PoseGraph& graph, const std::vector<std::uint8_t>& held, const std::vector<int>& order,
     std::uint64_t seed, const std::function<bool(const std::vector<Pose>&)>& enough);
 
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph

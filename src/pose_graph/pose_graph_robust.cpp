@@ -13,10 +13,12 @@
 #include <numeric>
 
 namespace trussmap {
+using namespace pose_graph;
+
 namespace {
 
 constexpr int kRounds = 60;  // of weights: mu grows by 1.4^60 = 6e8, which is the truncated square
-constexpr DescentOptions kRound{10, 1e-6};
+constexpr linalg::DescentOptions kRound{10, 1e-6};
 
 bool is_loop_closure(const PoseEdge& edge) {
   return std::abs(edge.from - edge.to) != 1;
@@ -40,14 +42,15 @@ class Graduation {
     const auto weigh = [&](double mu) {
       bool graded = false;
       for (const std::size_t k : closures_) {
-        weights[k] = gnc_weight(square(k, estimates), gate_, mu);
+        weights[k] = estimation::gnc_weight(square(k, estimates), gate_, mu);
         graded = graded || (weights[k] > 0.0 && weights[k] < 1.0);
       }
       system_.set_weights(weights);
       return graded;
     };
-    bend({.first = first_bend(largest, gate_), .most_rounds = kRounds}, weigh,
-         [&] { estimates = descend(system_, std::move(estimates), kRound).estimates; });
+    estimation::bend({.first = estimation::first_bend(largest, gate_), .most_rounds = kRounds},
+                     weigh,
+                     [&] { estimates = descend(system_, std::move(estimates), kRound).estimates; });
     return estimates;
   }
 
@@ -90,7 +93,7 @@ class Graduation {
 
 /// Those of `wrong` (the least wrong first) that the graph can do without and stay in one piece.
 std::vector<int> dispensable(const PoseGraph& graph, const std::vector<std::size_t>& wrong) {
-  DisjointSets parts(static_cast<int>(graph.vertices.size()));
+  linalg::DisjointSets parts(static_cast<int>(graph.vertices.size()));
   std::vector<bool> out(graph.pose_edges.size(), false);
   for (const std::size_t k : wrong) out[k] = true;
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -124,15 +127,15 @@ PoseGraph without(const PoseGraph& graph, const std::vector<int>& left_out) {
 
 std::string describe(const PoseGraph& graph, const std::vector<int>& left_out) {
   constexpr std::size_t kClosuresNamed = 8;
-  std::string text = joined(left_out.size(), " loop closure", left_out.size() == 1 ? "" : "s",
-                            " left out as wrong: ");
+  std::string text = text::joined(left_out.size(), " loop closure", left_out.size() == 1 ? "" : "s",
+                                  " left out as wrong: ");
   for (std::size_t k = 0; k < std::min(kClosuresNamed, left_out.size()); ++k) {
     const PoseEdge& edge = graph.pose_edges[idx(left_out[k])];
-    text += joined(k == 0 ? "" : ", ", graph.vertices[idx(edge.from)].id, " to ",
-                   graph.vertices[idx(edge.to)].id);
+    text += text::joined(k == 0 ? "" : ", ", graph.vertices[idx(edge.from)].id, " to ",
+                         graph.vertices[idx(edge.to)].id);
   }
   if (left_out.size() > kClosuresNamed)
-    text += joined(" and ", left_out.size() - kClosuresNamed, " more");
+    text += text::joined(" and ", left_out.size() - kClosuresNamed, " more");
   return text;
 }
 
@@ -149,7 +152,7 @@ RobustAdjustment adjust_robustly(const PoseGraph& graph, const RobustOptions& op
   const bool all_is_better = graduation.truncated(from_all) <= graduation.truncated(from_odometry);
   const std::vector<Pose>& best = all_is_better ? from_all : from_odometry;
   std::vector<int> left_out = dispensable(graph, graduation.outside(best));
-  reconsider([&](int) {
+  estimation::reconsider([&](int) {
     result.left_out = left_out;
     result.adjustment = adjust(without(graph, left_out), options.adjustment);
     left_out = dispensable(graph, graduation.outside(result.adjustment.estimates));

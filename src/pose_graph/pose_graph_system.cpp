@@ -8,11 +8,11 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::pose_graph {
 namespace {
 
-std::vector<NodePair> pairs_of(const PoseGraph& graph) {
-  std::vector<NodePair> pairs;
+std::vector<linalg::NodePair> pairs_of(const PoseGraph& graph) {
+  std::vector<linalg::NodePair> pairs;
   pairs.reserve(graph.edges());
   for (const PoseEdge& edge : graph.pose_edges) pairs.push_back({edge.from, edge.to});
   for (const PointEdge& edge : graph.point_edges) pairs.push_back({edge.pose, edge.point});
@@ -27,7 +27,7 @@ std::vector<int> sizes_of(const PoseGraph& graph, const std::vector<std::uint8_t
   sizes.reserve(held.size());
   for (std::size_t v = 0; v < held.size(); ++v) {
     const bool pose = is_pose(graph.vertices[v]);
-    const std::uint8_t whole = pose ? held_all : held_position;
+    const std::uint8_t whole = pose ? estimation::held_all : estimation::held_position;
     sizes.push_back((held[v] & whole) == whole ? 0 : (pose ? 3 : 2));
   }
   return sizes;
@@ -40,7 +40,7 @@ PoseGraphSystem::PoseGraphSystem(const PoseGraph& graph, const std::vector<std::
       pinned_(held),
       directions_(graph.vertices.size()),
       pairs_(pairs_of(graph)),
-      order_(elimination_order(static_cast<int>(graph.vertices.size()), pairs_)),
+      order_(linalg::elimination_order(static_cast<int>(graph.vertices.size()), pairs_)),
       normal_(sizes_of(graph, held), pairs_, order_) {
   pose_bars_.reserve(graph.pose_edges.size());
   for (const PoseEdge& edge : graph.pose_edges) {
@@ -92,12 +92,12 @@ double PoseGraphSystem::chi_squared(const std::vector<Pose>& estimates) {
 double PoseGraphSystem::linearise(const std::vector<Pose>& estimates, bool hold_headings) {
   pinned_ = held_;
   if (hold_headings) {
-    for (std::uint8_t& pinned : pinned_) pinned |= held_heading;
+    for (std::uint8_t& pinned : pinned_) pinned |= estimation::held_heading;
   }
   normal_.clear();
   gradient_.setZero(normal_.unknowns());
   const double chi2 = evaluate<true>(estimates);
-  hold_unknowns(normal_, gradient_, pinned_);
+  estimation::hold_unknowns(normal_, gradient_, pinned_);
   return chi2;
 }
 
@@ -105,9 +105,9 @@ PoseGraphSystem::Step PoseGraphSystem::solve_step(double damping) {
   constexpr double kLeastStiffness = 1e-9;  // of the largest, to be damped by
   Step step{-gradient_};
   if (normal_.unknowns() == 0) return step;
-  factorise_damped(normal_, damping, kLeastStiffness);
+  linalg::factorise_damped(normal_, damping, kLeastStiffness);
   normal_.solve_in_place(step.nodes);
-  step.predicted = predicted_decrease(step.nodes, gradient_, normal_.diagonal(), damping);
+  step.predicted = linalg::predicted_decrease(step.nodes, gradient_, normal_.diagonal(), damping);
   return step;
 }
 
@@ -125,4 +125,4 @@ std::vector<Pose> PoseGraphSystem::moved(const std::vector<Pose>& estimates,
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph

@@ -25,7 +25,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::pose_graph {
 
 class PoseGraphSystem {
  public:
@@ -58,9 +58,9 @@ class PoseGraphSystem {
                                         const Eigen::VectorXd& step) const;
 
   [[nodiscard]] const Eigen::VectorXd& gradient() const { return gradient_; }
-  [[nodiscard]] const BlockSystem& normal_equations() const { return normal_; }
-  [[nodiscard]] BlockSystem& normal_equations() { return normal_; }
-  [[nodiscard]] const std::vector<NodePair>& pairs() const { return pairs_; }
+  [[nodiscard]] const linalg::BlockSystem& normal_equations() const { return normal_; }
+  [[nodiscard]] linalg::BlockSystem& normal_equations() { return normal_; }
+  [[nodiscard]] const std::vector<linalg::NodePair>& pairs() const { return pairs_; }
   [[nodiscard]] const std::vector<int>& order() const { return order_; }
   [[nodiscard]] const std::vector<std::uint8_t>& held() const { return held_; }
   /// The vertex that an unknown of the normal equations belongs to.
@@ -102,12 +102,12 @@ class PoseGraphSystem {
   std::vector<Bar2> vector_bars_;
   std::vector<Bar3> full_pose_bars_;  ///< the same with all weights 1
   std::vector<Bar2> full_vector_bars_;
-  std::vector<Direction> directions_;  ///< of each pose's heading, at the present estimates
-  std::vector<NodePair> pairs_;        ///< pose, point, then displacement edges
+  std::vector<Direction> directions_;    ///< of each pose's heading, at the present estimates
+  std::vector<linalg::NodePair> pairs_;  ///< pose, point, then displacement edges
   std::vector<int> order_;
   std::vector<int> vertex_of_;
-  BlockSystem normal_;
+  linalg::BlockSystem normal_;
   Eigen::VectorXd gradient_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph

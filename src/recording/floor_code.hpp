@@ -11,7 +11,7 @@
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
 
-namespace trussmap {
+namespace trussmap::recording {
 
 /// m, ahead and to the left of a robot that stands on the landmark; zero without dx and dy.
 [[nodiscard]] inline Vector2 code_from_robot(const Sighting& sighting) {
@@ -26,4 +26,4 @@ inline void place_by_code(const Vector2& code, Sighting& sighting) {
   sighting.dy = robot.y();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::recording

@@ -37,7 +37,7 @@ TestPath parse_segment(std::string_view text) {
   if (text.starts_with('a')) {
     const std::optional<double> turn = number(text.substr(1));
     if (!turn) return {};
-    return {{0.0, *turn * kDegree}};
+    return {{0.0, *turn * geometry::kDegree}};
   }
   const std::size_t at = text.find('@');
   const std::optional<double> distance = number(text.substr(0, at));
@@ -45,7 +45,7 @@ TestPath parse_segment(std::string_view text) {
   if (at == std::string_view::npos) return {{*distance, 0.0}};
   const std::optional<double> turn = number(text.substr(at + 1));
   if (!turn) return {};
-  return {{*distance, *turn * kDegree}};
+  return {{*distance, *turn * geometry::kDegree}};
 }
 
 [[noreturn]] void refuse(const std::string& segment, const std::string& path) {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <tuple>
 
-namespace trussmap {
+namespace trussmap::recording {
 namespace {
 
 /// Absent ones behind all others.
@@ -46,4 +46,4 @@ std::vector<bool> repeated_rows(const std::vector<Loop>& loops) {
   return repeated;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::recording

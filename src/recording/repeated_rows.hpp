@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::recording {
 
 /// Per row, whether an earlier one of the same time is the same in all columns. Rows in order of
 /// time.
@@ -17,4 +17,4 @@ namespace trussmap {
 /// Likewise, wherever the earlier one stands.
 [[nodiscard]] std::vector<bool> repeated_rows(const std::vector<Loop>& loops);
 
-}  // namespace trussmap
+}  // namespace trussmap::recording

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace trussmap {
+namespace trussmap::recording {
 
 std::vector<TimeSpan> merged(std::vector<TimeSpan> spans) {
   std::erase_if(spans, [](const TimeSpan& span) { return !(span.from < span.to); });
@@ -27,4 +27,4 @@ bool overlaps_any(const TimeSpan& one, const std::vector<TimeSpan>& spans) {
   });
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::recording

@@ -8,11 +8,11 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::recording {
 
 /// In order of time; those that touch or overlap as one, and those of no length gone.
 [[nodiscard]] std::vector<TimeSpan> merged(std::vector<TimeSpan> spans);
 
 [[nodiscard]] bool overlaps_any(const TimeSpan& one, const std::vector<TimeSpan>& spans);
 
-}  // namespace trussmap
+}  // namespace trussmap::recording

@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace trussmap {
+namespace trussmap::recording {
 
 struct TimeUnit {
   const char* name;
@@ -15,4 +15,4 @@ struct TimeUnit {
 inline constexpr std::array<TimeUnit, 3> kTimeUnits{
     {{"milliseconds", 1e3}, {"microseconds", 1e6}, {"nanoseconds", 1e9}}};
 
-}  // namespace trussmap
+}  // namespace trussmap::recording

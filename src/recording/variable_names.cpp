@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace trussmap {
+namespace trussmap::recording {
 namespace {
 
 constexpr std::array<std::string_view, 4> kRates{"speed", "turn_rate", "acceleration", "curvature"};
@@ -44,4 +44,4 @@ bool is_rate(std::string_view variable) {
   return std::find(kRates.begin(), kRates.end(), variable) != kRates.end();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::recording

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::recording {
 
 /// Names that a covariate may not have, and a shape may always use.
 [[nodiscard]] const std::vector<std::string>& reserved_variables();
@@ -20,4 +20,4 @@ namespace trussmap {
 /// "m/s" of speed; "" of what has none, or whose unit nobody states.
 [[nodiscard]] std::string_view unit_of_variable(std::string_view variable);
 
-}  // namespace trussmap
+}  // namespace trussmap::recording

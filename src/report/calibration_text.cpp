@@ -61,7 +61,7 @@ Verdict verdict(const WheelCalibration& found, const CalibrationValidation& held
   if (dispersion > kFarTooLarge) {
     if (result.mood == Mood::good) result.mood = Mood::doubt;
     result.text += fmt::format("; but errors are {} times what the model's noise allows",
-                               times_text(std::sqrt(dispersion)));
+                               text::times_text(std::sqrt(dispersion)));
   }
   return result;
 }
@@ -71,7 +71,7 @@ std::vector<std::string> cells_of(const std::string& name, const QuantityText& s
   return {name, size.value, size.error.empty() ? "" : "\u00b1 " + size.error, unit};
 }
 
-std::string text(const TestedDrives& test) {
+std::string told(const TestedDrives& test) {
   const auto line = [](const char* what, double before, double after, const char* unit) {
     return fmt::format("  {}  {:8.1f} -> {:.1f} {}\n", what, 1000.0 * before, 1000.0 * after, unit);
   };
@@ -95,10 +95,10 @@ std::string lateness(const std::vector<double>& late) {
 }
 
 std::string thousandths(double metres) {
-  return without_sign_of_nothing(fixed_text(1000.0 * metres, 1));
+  return text::without_sign_of_nothing(text::fixed_text(1000.0 * metres, 1));
 }
 
-std::string text(const TruthAlignment& truth) {
+std::string told(const TruthAlignment& truth) {
   std::vector<double> late;
   late.reserve(truth.clocks.size());
   for (const auto& [session, clock] : truth.clocks) late.push_back(clock.late);
@@ -109,7 +109,7 @@ std::string text(const TruthAlignment& truth) {
       lateness(late));
 }
 
-std::string text(const FixAlignment& fixes) {
+std::string told(const FixAlignment& fixes) {
   std::vector<double> late;
   late.reserve(fixes.late.size());
   for (const auto& [session, one] : fixes.late) late.push_back(one);
@@ -174,7 +174,7 @@ std::string calibration_text(const WheelCalibration& found, const CalibrationVal
     out += fmt::format(
         "  take the \u00b1 {} times as large: that is how far errors are beyond the model's "
         "noise\n",
-        times_text(std::sqrt(dispersion)));
+        text::times_text(std::sqrt(dispersion)));
   } else if (found.dof >= kFewest && dispersion < 1.0 / kFarTooLarge) {
     out += fmt::format(
         "  errors are {:.2g} times what the model's noise allows: it is stated too large, and so "
@@ -184,9 +184,9 @@ std::string calibration_text(const WheelCalibration& found, const CalibrationVal
   if (!found.left_out.empty()) {
     out += left_out_text(found.left_out);
   }
-  if (!found.truth.clocks.empty()) out += text(found.truth);
-  if (!found.fixes.late.empty()) out += text(found.fixes);
-  if (test) out += text(*test);
+  if (!found.truth.clocks.empty()) out += told(found.truth);
+  if (!found.fixes.late.empty()) out += told(found.fixes);
+  if (test) out += told(*test);
   for (const std::string& one : found.undetermined) out += "\nnot determined: " + one + "\n";
   if (!found.settled) {
     out += "\n" + warning_text(

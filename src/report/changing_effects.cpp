@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::report {
 namespace {
 
 /// Columns of a stair: each part from its beginning to its end, a gap between sessions.
@@ -26,8 +26,8 @@ struct Stair {
   void add(double at, double mean, double sd) {
     t.push_back(at);
     value.push_back(mean);
-    low.push_back(mean - kNormal95 * sd);
-    high.push_back(mean + kNormal95 * sd);
+    low.push_back(mean - plot::kNormal95 * sd);
+    high.push_back(mean + plot::kNormal95 * sd);
   }
 };
 
@@ -41,8 +41,8 @@ Stair stair_of(const std::vector<CoursePart>& course, std::size_t session) {
   return stair;
 }
 
-Chart course_chart(const ChangingCoefficient& change, std::size_t number) {
-  Chart chart;
+plot::Chart course_chart(const ChangingCoefficient& change, std::size_t number) {
+  plot::Chart chart;
   chart.id = fmt::format("course-{}", number + 1);
   chart.title = capitalised(name_in_words(change.effect)) + " while driving";
   chart.caption =
@@ -57,15 +57,15 @@ Chart course_chart(const ChangingCoefficient& change, std::size_t number) {
     if (stair.t.empty()) continue;
     const std::string colour = std::to_string(k % 8 + 1);
     const std::string name = sessions > 1 ? fmt::format("recording {}", k + 1) : "course";
-    chart.layers.push_back({LayerKind::band,
+    chart.layers.push_back({plot::LayerKind::band,
                             "",
                             {{"t [s]", stair.t}, {"from", stair.low}, {"to", stair.high}},
                             colour});
     chart.layers.push_back(
-        {LayerKind::line, name, {{"t [s]", stair.t}, {"value", stair.value}}, colour});
+        {plot::LayerKind::line, name, {{"t [s]", stair.t}, {"value", stair.value}}, colour});
   }
-  ChartLayer level{
-      LayerKind::level, "all the time the same", {{"value", {change.fitted}}}, "faint"};
+  plot::ChartLayer level{
+      plot::LayerKind::level, "all the time the same", {{"value", {change.fitted}}}, "faint"};
   level.dashed = true;
   chart.layers.push_back(std::move(level));
   return chart;
@@ -77,7 +77,7 @@ std::string changing_text(const Diagnosis& diagnosis) {
   std::string text;
   for (const ChangingCoefficient& one : diagnosis.changing) {
     if (text.empty()) text = "\nWhat changes while driving\n";
-    text += fmt::format("  {} (p {})\n", in_words(one), probability_text(one.p_value));
+    text += fmt::format("  {} (p {})\n", trussmap::in_words(one), probability_text(one.p_value));
   }
   return text;
 }
@@ -92,4 +92,4 @@ void add_changes(const Diagnosis& diagnosis, PageContent& page) {
                                        sentences_of(diagnosis.changing), std::move(charts)));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -9,7 +9,7 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// A line each; empty where none changes.
 [[nodiscard]] std::string changing_text(const Diagnosis& diagnosis);
@@ -17,4 +17,4 @@ namespace trussmap {
 /// A sentence and a chart of each one's course, with its 95 % band; none where none changes.
 void add_changes(const Diagnosis& diagnosis, PageContent& page);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -17,6 +17,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 constexpr std::size_t kTrendsNamed = 3;
@@ -35,9 +37,10 @@ PageTable route_table(const Comparison& result) {
   for (std::size_t k = 0; k < std::min(kRoutes, result.routes.size()); ++k) {
     const RouteMisfit& route = result.routes[k];
     table.rows.push_back({route.from, route.to, std::to_string(route.traversals),
-                          fmt::format("{:.1f}", route.chi2), signed_fixed_text(route.force, 0),
-                          signed_fixed_text(100.0 * route.stretch_error, 2),
-                          signed_fixed_text(1000.0 * route.orientation_error, 1)});
+                          fmt::format("{:.1f}", route.chi2),
+                          text::signed_fixed_text(route.force, 0),
+                          text::signed_fixed_text(100.0 * route.stretch_error, 2),
+                          text::signed_fixed_text(1000.0 * route.orientation_error, 1)});
   }
   return table;
 }
@@ -63,9 +66,10 @@ const Trend* telling_trend(const Comparison& result) {
 /// "the compass error goes with heading (3.1°)".
 std::string trend_words(const Trend& trend) {
   return fmt::format("the {} error {}, by {} (rms)", trend.kind,
-                     trend.against == "all" ? "is everywhere alike"
-                                            : "goes with " + variable_in_words(trend.against),
-                     shown(trend.size, trend.unit));
+                     trend.against == "all"
+                         ? "is everywhere alike"
+                         : "goes with " + wording::variable_in_words(trend.against),
+                     wording::shown(trend.size, trend.unit));
 }
 
 std::string page_verdict(const Comparison& result) {
@@ -163,7 +167,7 @@ PageSection map_section(const ModelEvidence& model) {
   PageSection section = maps_section("Where legs end off", {{"routes by how far off", model}});
   if (!model.comparison.held_out.legs.empty()) {
     std::get<ChartRow>(section.blocks.front())
-        .push_back(held_out_chart("held-out", {{"", model.comparison.held_out}}));
+        .push_back(plot::held_out_chart("held-out", {{"", model.comparison.held_out}}));
   }
   return section;
 }
@@ -172,8 +176,8 @@ PageSection routes_section(const ModelEvidence& model) {
   const Comparison& result = model.comparison;
   PageSection section = legs_section("Legs and routes", result);
   section.details.emplace_back(
-      ChartRow{truss_chart("truss", "Map with the forces in its bars", model.map, result.routes,
-                           loudest_force(result))});
+      ChartRow{plot::truss_chart("truss", "Map with the forces in its bars", model.map,
+                                 result.routes, plot::loudest_force(result))});
   if (!result.routes.empty()) section.details.emplace_back(route_table(result));
   if (!result.outliers.empty()) section.details.emplace_back(outlier_table(result));
   return section;

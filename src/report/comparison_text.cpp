@@ -14,16 +14,16 @@ namespace {
 
 std::string size_text(const Trend& trend) {
   if (trend.unit.empty()) return fmt::format("{:.2g} %", 100.0 * trend.size);
-  if (trend.unit == "rad") return fmt::format("{:.2g} deg", trend.size * kDegrees);
+  if (trend.unit == "rad") return fmt::format("{:.2g} deg", trend.size * geometry::kDegrees);
   if (trend.unit == "m") return fmt::format("{:.2g} mm", 1e3 * trend.size);
   return fmt::format("{:.2g} {}", trend.size, trend.unit);
 }
 
 std::string signed_percent(double value) {
-  return signed_fixed_text(100.0 * value, 2);
+  return text::signed_fixed_text(100.0 * value, 2);
 }
 std::string signed_mrad(double value) {
-  return signed_fixed_text(1e3 * value, 1);
+  return text::signed_fixed_text(1e3 * value, 1);
 }
 
 std::string trends_text(const Comparison& result, TextStyle style) {

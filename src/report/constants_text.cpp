@@ -18,6 +18,8 @@
 #include <nlohmann/json.hpp>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 constexpr const char* kFactor = "times";

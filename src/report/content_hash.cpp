@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace trussmap {
+namespace trussmap::report {
 namespace {
 
 using Word = std::uint32_t;
@@ -98,4 +98,4 @@ std::string content_hash(std::string_view text) {
   return name + '=';
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

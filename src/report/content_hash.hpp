@@ -8,9 +8,9 @@
 #include <string>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// Of a text without \r, which a browser reads as \n.
 [[nodiscard]] std::string content_hash(std::string_view text);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -20,6 +20,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 constexpr const char* kGiven = "as given";
@@ -229,8 +231,8 @@ LeftBy left_by(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
 }
 
 /// What the best changes of different names would leave of the held-out error, rivals first.
-Chart changes_chart(const Diagnosis& diagnosis, double floor) {
-  std::vector<LadderStep> steps{
+plot::Chart changes_chart(const Diagnosis& diagnosis, double floor) {
+  std::vector<plot::LadderStep> steps{
       {kGiven, diagnosis.held_out.arrival_rms, diagnosis.chi2, diagnosis.dof}};
   for (const Finding& one : diagnosis.findings) {
     if (steps.size() > kChangesDrawn) break;
@@ -239,7 +241,7 @@ Chart changes_chart(const Diagnosis& diagnosis, double floor) {
     steps.push_back({"+ " + name_in_words(one.effect), one.held_out.arrival_rms,
                      diagnosis.chi2 - one.score, diagnosis.dof - one.dof});
   }
-  Chart chart = ladder_chart("changes", steps, floor);
+  plot::Chart chart = plot::ladder_chart("changes", steps, floor);
   chart.title = "What each change would leave";
   chart.caption =
       "How far off held-out legs would end (root mean square) with each of the best changes alone, "
@@ -287,7 +289,7 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidenc
   // A place is seen on the map.
   const bool place = std::any_of(
       evidence.effects.begin(), evidence.effects.end(),
-      [](const EffectEvidence& one) { return place_of(one.estimate.effect).has_value(); });
+      [](const EffectEvidence& one) { return effects::place_of(one.estimate.effect).has_value(); });
   PageSection maps = maps_section("Where legs end off", models, evidence.effects);
   if (place) page.sections.push_back(maps);
   if (!evidence.effects.empty()) page.sections.push_back(cause_section(sized, evidence));
@@ -301,7 +303,7 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidenc
   if (noise_first) page.sections.push_back(noise);
   if (!evidence.with && !diagnosis.held_out.legs.empty()) {
     std::get<ChartRow>(maps.blocks.front())
-        .push_back(held_out_chart("held-out", {{"", evidence.given.comparison.held_out}}));
+        .push_back(plot::held_out_chart("held-out", {{"", evidence.given.comparison.held_out}}));
   }
   if (!place) page.sections.push_back(std::move(maps));
   if (evidence.with) {

@@ -17,7 +17,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::report {
 namespace {
 
 constexpr std::size_t kEventRows = 8;
@@ -32,12 +32,12 @@ std::string what_it_would_be(const Effect& effect, const EffectRange& range) {
 
 /// The largest |g| of coefficients as they are.
 std::string at_most(const Effect& effect, const EffectRange& range) {
-  return shown(std::max(std::abs(range.least), std::abs(range.most)), unit_of(effect));
+  return wording::shown(std::max(std::abs(range.least), std::abs(range.most)), unit_of(effect));
 }
 
 /// The smallest size that would have been seen; empty where none would have been.
 std::string seen_from(const Finding& finding, const FindingSize& size) {
-  return size.seen_from > 0.0 ? shown(size.seen_from, unit_of(finding.effect)) : "";
+  return size.seen_from > 0.0 ? wording::shown(size.seen_from, unit_of(finding.effect)) : "";
 }
 
 bool looks_like_one_of(const Effect& effect, const std::vector<LookAlike>& rivals) {
@@ -127,7 +127,7 @@ void add_found(PageTable& table, EffectPart part, const std::vector<EffectEviden
 void add_noise(PageTable& table, const Diagnosis& diagnosis) {
   if (noise_is_wrong(diagnosis)) {
     table.rows.push_back({"noise", "other than the model states", "estimated",
-                          typeset(in_words(diagnosis.under->noise)), "-", "-"});
+                          typeset(trussmap::in_words(diagnosis.under->noise)), "-", "-"});
     table.tones.push_back(Tone::bad);
     return;
   }
@@ -135,7 +135,7 @@ void add_noise(PageTable& table, const Diagnosis& diagnosis) {
   const NoiseTest& first = diagnosis.noise.front();
   const bool more = first.p_adjusted < diagnosis.level;
   table.rows.push_back({"noise", more ? "more than the model states" : "as the model states it",
-                        first.law, more ? typeset(in_words(first)) : "-", "-",
+                        first.law, more ? typeset(trussmap::in_words(first)) : "-", "-",
                         chance_text(first.p_adjusted)});
   table.tones.push_back(more ? Tone::bad : Tone::neutral);
 }
@@ -148,14 +148,14 @@ void add_event(PageTable& table, const char* part, const Diagnosis& diagnosis, b
   if (found == diagnosis.events.end()) return;
   const bool stands_out = found->p_adjusted < diagnosis.level;
   table.rows.push_back({part, stands_out ? "stands out" : "nothing out of line",
-                        fmt::format("{} {}", name_of(found->kind), found->name),
-                        stands_out ? typeset(in_words(*found)) : "-", "-",
+                        fmt::format("{} {}", trussmap::name_of(found->kind), found->name),
+                        stands_out ? typeset(trussmap::in_words(*found)) : "-", "-",
                         chance_text(found->p_adjusted)});
   table.tones.push_back(stands_out ? Tone::bad : Tone::neutral);
 }
 
 std::string cause_of(const Effect& effect) {
-  if (const CatalogueEntry* entry = usual_entry(effect)) return std::string(entry->cause);
+  if (const CatalogueEntry* entry = wording::usual_entry(effect)) return std::string(entry->cause);
   return find_entry(effect.name) == nullptr ? "-" : "not its usual sign";
 }
 
@@ -183,7 +183,7 @@ PageTable tried_table(const SizedDiagnosis& sized) {
 
 std::vector<std::string> well_known(const SizedDiagnosis& sized) {
   std::vector<std::string> texts;
-  for (const CatalogueRecord& record : catalogue_records()) {
+  for (const effects::CatalogueRecord& record : effects::catalogue_records()) {
     if (!record.well_known) continue;
     const std::string_view name = record.entry.name;
     for (const Finding& one : sized.diagnosis.findings) {
@@ -234,12 +234,13 @@ PageTable others_table(const Diagnosis& diagnosis) {
   };
   for (std::size_t k = 0; k < std::min(kEventRows, diagnosis.noise.size()); ++k) {
     const NoiseTest& one = diagnosis.noise[k];
-    add("noise", one.law, one.p_adjusted < diagnosis.level ? in_words(one) : "-", one.score,
-        one.p_adjusted);
+    add("noise", one.law, one.p_adjusted < diagnosis.level ? trussmap::in_words(one) : "-",
+        one.score, one.p_adjusted);
   }
   for (std::size_t k = 0; k < std::min(kEventRows, diagnosis.events.size()); ++k) {
     const EventTest& one = diagnosis.events[k];
-    add(std::string(name_of(one.kind)), one.name, in_words(one), one.score, one.p_adjusted);
+    add(std::string(trussmap::name_of(one.kind)), one.name, trussmap::in_words(one), one.score,
+        one.p_adjusted);
   }
   return table;
 }
@@ -328,7 +329,7 @@ PageSection tried_section(const SizedDiagnosis& sized) {
   if (!others.rows.empty()) section.blocks.emplace_back(std::move(others));
   PageTable unseen = unseen_table(diagnosis);
   if (!unseen.rows.empty()) section.blocks.emplace_back(std::move(unseen));
-  for (const std::string& line : in_words(diagnosis.lacks)) {
+  for (const std::string& line : trussmap::in_words(diagnosis.lacks)) {
     section.blocks.emplace_back("What these data lack: " + typeset(line) + ".");
   }
   for (const std::string& line : diagnosis.warnings) {
@@ -337,4 +338,4 @@ PageSection tried_section(const SizedDiagnosis& sized) {
   return section;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

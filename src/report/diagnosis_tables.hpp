@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// A diagnosis with what its findings do in the recordings.
 struct SizedDiagnosis {
@@ -37,4 +37,4 @@ struct SizedDiagnosis {
 /// none would have been.
 [[nodiscard]] std::string seen_from_note(const SizedDiagnosis& sized);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

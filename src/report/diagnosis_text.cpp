@@ -156,9 +156,9 @@ std::string candidates_text(const Diagnosis& result, std::size_t count, TextStyl
 
 std::string diagnosis_text(const Diagnosis& result, const std::vector<NoiseBudget>& budget,
                            std::size_t list, TextStyle style) {
-  std::string text = missing_text(result, style) + changing_text(result) + places_text(result) +
-                     sets_text(result) + candidates_text(result, list, style) +
-                     others_text(result, list);
+  std::string text = missing_text(result, style) + report::changing_text(result) +
+                     report::places_text(result) + report::sets_text(result) +
+                     candidates_text(result, list, style) + others_text(result, list);
   if (!result.unobservable.empty()) text += "\nNot to be seen in these data\n";
   for (const Unobservable& one : result.unobservable) {
     const Advice advice = advice_on(one);

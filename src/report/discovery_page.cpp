@@ -19,6 +19,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 constexpr const char* kModelGiven = "as given";
@@ -32,8 +34,8 @@ std::string step_name(const DiscoveryStep& step) {
   return name;
 }
 
-std::vector<LadderStep> ladder_of(const Discovery& discovery) {
-  std::vector<LadderStep> steps;
+std::vector<plot::LadderStep> ladder_of(const Discovery& discovery) {
+  std::vector<plot::LadderStep> steps;
   for (const DiscoveryStep& one : discovery.steps) {
     steps.push_back({step_name(one), one.held_out.arrival_rms, one.chi2, one.dof});
     if (one.added && one.predicted.arrival_rms > 0.0) {

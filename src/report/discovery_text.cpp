@@ -96,7 +96,7 @@ std::string discovery_text(const Discovery& result, const Noise& given,
           fmt::format("  instead of {} it could be: {} more\n", step.added->name, rivals - kMost);
     }
   }
-  text += changing_text(result.last) + places_text(result.last);
+  text += report::changing_text(result.last) + report::places_text(result.last);
   for (const std::string& warning : result.found.warnings) {
     text += warning_text(warning, style);
   }

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <initializer_list>
 
-namespace trussmap {
+namespace trussmap::report {
 namespace {
 
 bool speaks_of(const Effect& effect, std::initializer_list<const char*> names) {
@@ -25,12 +25,12 @@ const char* name_of(EffectPart part) {
 }
 
 EffectPart part_of(const Effect& effect) {
-  switch (acts_on(effect.channel)) {
-    case ActsOn::readings:
+  switch (effects::acts_on(effect.channel)) {
+    case effects::ActsOn::readings:
       return EffectPart::compass;
-    case ActsOn::views:
+    case effects::ActsOn::views:
       return EffectPart::sighting;
-    case ActsOn::drives:
+    case effects::ActsOn::drives:
       break;
   }
   if (effect.channel == Channel::gyro || effect.channel == Channel::gyro_scale) {
@@ -44,4 +44,4 @@ EffectPart part_of(const Effect& effect) {
   return turns ? EffectPart::turning : EffectPart::wheels;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -8,7 +8,7 @@
 
 #include <array>
 
-namespace trussmap {
+namespace trussmap::report {
 
 enum class EffectPart { wheels, turning, floor, compass, gyro, sighting };
 inline constexpr std::array kEffectParts{EffectPart::wheels, EffectPart::turning,
@@ -18,4 +18,4 @@ inline constexpr std::array kEffectParts{EffectPart::wheels, EffectPart::turning
 [[nodiscard]] const char* name_of(EffectPart part);
 [[nodiscard]] EffectPart part_of(const Effect& effect);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -93,7 +93,7 @@ std::string opening(const Paper& paper, const std::string& title) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
       "width=\"{0:.0f}\" height=\"{1:.0f}\" font-family=\"sans-serif\" role=\"img\" "
       "aria-label=\"{2}\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-      paper.width, paper.height, xml_escaped(title));
+      paper.width, paper.height, text::xml_escaped(title));
 }
 
 /// At most `most` of the frames, evenly spread, the last among them.
@@ -131,22 +131,22 @@ std::string shown_between(double from, double to, double seconds) {
 }
 
 std::string error_picture(const std::vector<ExplorationFrame>& frames) {
-  Mark line;
-  line.kind = MarkKind::polyline;
-  line.colour = colour::kBlue;
+  plot::Mark line;
+  line.kind = plot::MarkKind::polyline;
+  line.colour = plot::colour::kBlue;
   line.size = 1.5;
   for (const ExplorationFrame& one : chosen_frames(frames, 400)) {
     line.at.emplace_back(one.way, one.error);
   }
-  Panel panel;
+  plot::Panel panel;
   panel.x_label = "driven [m]";
   panel.y_label = "landmarks off, mean [m]";
   panel.marks.push_back(std::move(line));
-  Figure figure;
+  plot::Figure figure;
   figure.title = "How far off the map is";
   figure.subtitle = "Of the landmarks found so far";
   figure.panels.push_back(std::move(panel));
-  return draw_figure(figure);
+  return plot::draw_figure(figure);
 }
 
 }  // namespace
@@ -186,7 +186,7 @@ std::string exploration_page(const std::vector<ExplorationFrame>& frames,
       "<h1>A map as it grows</h1>\n<p>{0}. Black: the map, its routes as dark as they were driven "
       "often; blue: the robot. What it does not know: red crosses, where the landmarks are, and "
       "in pale grey the ways between them.</p>\n",
-      xml_escaped(subject));
+      text::xml_escaped(subject));
   page += "<div class=\"row\">\n" + exploration_picture(frames, world, subject);
   if (!frames.empty()) page += error_picture(frames);
   page += "</div>\n<h2>Moments</h2>\n<div class=\"row\">\n";

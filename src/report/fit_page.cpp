@@ -14,6 +14,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 constexpr const char* kBefore = "without effects";

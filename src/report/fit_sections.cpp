@@ -16,7 +16,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::report {
 namespace {
 
 constexpr std::size_t kTrends = 12;
@@ -32,7 +32,7 @@ PageTable effect_table(const std::vector<EffectEvidence>& effects) {
     for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
       const QuantityText text = quantity_text(effect.coefficients[k], one.estimate.sd[k]);
       table.rows.push_back({k == 0 ? name_in_words(effect) : "",
-                            std::string(name_of(effect.channel)),
+                            std::string(trussmap::name_of(effect.channel)),
                             effect.shape[k % effect.shape.size()].text(), text.value, text.error});
     }
   }
@@ -40,19 +40,20 @@ PageTable effect_table(const std::vector<EffectEvidence>& effects) {
 }
 
 /// Coefficients in standard errors from zero: the only scale that all share.
-Chart strength_chart(const std::vector<EffectEvidence>& effects) {
-  Chart chart;
+plot::Chart strength_chart(const std::vector<EffectEvidence>& effects) {
+  plot::Chart chart;
   chart.id = "coefficients";
   chart.title = "How sure are the coefficients?";
   chart.caption =
       "Each coefficient in standard errors, with its 95 % interval. One whose interval holds 0 is "
       "not seen by these recordings.";
   chart.x = {.title = "coefficient over its standard error", .zero = true};
-  chart.layers.push_back({LayerKind::upright, "", {{"no effect", {0.0}}}, "faint"});
-  ChartLayer layer{LayerKind::intervals,
-                   "",
-                   {{"coefficient"}, {"standard errors"}, {"95 % from"}, {"to"}, {"value"}, {"sd"}},
-                   "1"};
+  chart.layers.push_back({plot::LayerKind::upright, "", {{"no effect", {0.0}}}, "faint"});
+  plot::ChartLayer layer{
+      plot::LayerKind::intervals,
+      "",
+      {{"coefficient"}, {"standard errors"}, {"95 % from"}, {"to"}, {"value"}, {"sd"}},
+      "1"};
   for (const EffectEvidence& one : effects) {
     for (std::size_t k = 0; k < one.estimate.effect.coefficients.size(); ++k) {
       const double sd = one.estimate.sd[k];
@@ -61,14 +62,14 @@ Chart strength_chart(const std::vector<EffectEvidence>& effects) {
       const double strength = effect.coefficients[k] / sd;
       layer.columns[0].texts.push_back(name_in_words(effect) + " \u00d7 " +
                                        effect.shape[k % effect.shape.size()].text());
-      const double numbers[] = {strength, strength - kNormal95, strength + kNormal95,
+      const double numbers[] = {strength, strength - plot::kNormal95, strength + plot::kNormal95,
                                 effect.coefficients[k], sd};
       for (std::size_t i = 0; i < 5; ++i) layer.columns[i + 1].numbers.push_back(numbers[i]);
     }
   }
-  make_unique(layer.columns[0].texts);
+  plot::make_unique(layer.columns[0].texts);
   chart.y.categories = layer.columns[0].texts;
-  chart.height = bars_height(chart.y.categories.size());
+  chart.height = plot::bars_height(chart.y.categories.size());
   if (!chart.y.categories.empty()) chart.layers.push_back(std::move(layer));
   return chart;
 }
@@ -85,7 +86,8 @@ PageTable trend_table(const Comparison& result) {
   for (const Trend& trend : result.trends) {
     if (table.rows.size() == kTrends) break;
     table.rows.push_back({trend.kind, trend_variable(trend), fmt::format("{:.1f}", trend.score),
-                          shown(trend.size, trend.unit), probability_text(trend.p_adjusted)});
+                          wording::shown(trend.size, trend.unit),
+                          probability_text(trend.p_adjusted)});
     table.tones.push_back(trend.p_adjusted < result.level ? Tone::bad : Tone::neutral);
   }
   return table;
@@ -116,8 +118,8 @@ std::string leaves(const Effect& effect, const LeftBy& left) {
 }
 
 /// Curves of rivals that differ in nothing but their place or threshold are one.
-std::vector<NamedCurve> rival_curves(const EffectEvidence& effect, const LeftBy& left) {
-  std::vector<NamedCurve> curves;
+std::vector<plot::NamedCurve> rival_curves(const EffectEvidence& effect, const LeftBy& left) {
+  std::vector<plot::NamedCurve> curves;
   for (std::size_t k = 0; k < effect.response.rivals.size(); ++k) {
     const Effect& rival = effect.rivals[k];
     const bool same = k > 0 && rival.channel == effect.rivals[k - 1].channel &&
@@ -131,8 +133,8 @@ std::vector<NamedCurve> rival_curves(const EffectEvidence& effect, const LeftBy&
   return curves;
 }
 
-Chart effect_chart(const std::string& id, const EffectEvidence& effect, const LeftBy& left) {
-  const std::vector<NamedCurve> rivals = rival_curves(effect, left);
+plot::Chart effect_chart(const std::string& id, const EffectEvidence& effect, const LeftBy& left) {
+  const std::vector<plot::NamedCurve> rivals = rival_curves(effect, left);
   std::string caption =
       "Points: the error that the recordings show where the model lacks this effect, with 95 % "
       "intervals. Line: the effect as fitted. Where they agree, the effect has the right shape.";
@@ -141,8 +143,8 @@ Chart effect_chart(const std::string& id, const EffectEvidence& effect, const Le
         " Dashed: what the points would show if it were the other effect instead; the nearer to "
         "the points, the harder to tell.";
   }
-  return response_chart(id, name_in_words(effect.estimate.effect), caption, effect.response,
-                        "as fitted" + leaves(effect.estimate.effect, left), rivals);
+  return plot::response_chart(id, name_in_words(effect.estimate.effect), caption, effect.response,
+                              "as fitted" + leaves(effect.estimate.effect, left), rivals);
 }
 
 }  // namespace
@@ -162,17 +164,17 @@ PageSection effect_section(const std::string& title, const std::vector<EffectEvi
 }
 
 PageSection gain_section(const NamedModel& before, const NamedModel& after, double floor,
-                         const std::vector<LadderStep>& ladder) {
+                         const std::vector<plot::LadderStep>& ladder) {
   PageSection section{"What it gains", {}};
   const Comparison& one = before.model.comparison;
   const Comparison& other = after.model.comparison;
   if (!other.held_out.legs.empty()) {
-    const std::vector<LadderStep> two{
+    const std::vector<plot::LadderStep> two{
         {before.name, one.held_out.arrival_rms, one.chi2, one.dof},
         {after.name, other.held_out.arrival_rms, other.chi2, other.dof}};
-    ChartRow charts{
-        ladder_chart("ladder", ladder.empty() ? two : ladder, floor),
-        held_out_chart("held-out", {{before.name, one.held_out}, {after.name, other.held_out}})};
+    ChartRow charts{plot::ladder_chart("ladder", ladder.empty() ? two : ladder, floor),
+                    plot::held_out_chart(
+                        "held-out", {{before.name, one.held_out}, {after.name, other.held_out}})};
     charts[0].height = std::max(charts[0].height, charts[1].height);
     section.blocks.emplace_back(std::move(charts));
   }
@@ -185,11 +187,11 @@ PageSection maps_section(const std::string& title, const std::vector<NamedModel>
   std::vector<Effect> placed;
   placed.reserve(effects.size());
   for (const EffectEvidence& one : effects) placed.push_back(one.estimate.effect);
-  std::vector<std::vector<RouteError>> routes;
+  std::vector<std::vector<plot::RouteError>> routes;
   routes.reserve(models.size());
   double worst = 0.0;
   for (const NamedModel& one : models) {
-    routes.push_back(route_errors(one.model.comparison.worst, one.model.map));
+    routes.push_back(plot::route_errors(one.model.comparison.worst, one.model.map));
     if (!routes.back().empty()) worst = std::max(worst, routes.back().front().rms);
   }
   ChartRow maps;
@@ -197,31 +199,32 @@ PageSection maps_section(const std::string& title, const std::vector<NamedModel>
     const std::string id = models.size() == 1 ? "map" : fmt::format("map-{}", k + 1);
     const std::string name = capitalised(models[k].name);
     // Without landmarks there are no routes: the path alone.
-    maps.push_back(routes[k].empty() ? truss_chart(id, name, models[k].model.map, {}, 1.0)
-                                     : route_chart(id, name, models[k].model.map, routes[k],
-                                                   by_wheels_alone(worst)));
-    add_places(maps.back(), placed);
+    maps.push_back(routes[k].empty() ? plot::truss_chart(id, name, models[k].model.map, {}, 1.0)
+                                     : plot::route_chart(id, name, models[k].model.map, routes[k],
+                                                         plot::by_wheels_alone(worst)));
+    plot::add_places(maps.back(), placed);
     if (k > 0) maps.back().caption = "The same millimetres have the same colour as in the first.";
   }
   return {title, {std::move(maps)}};
 }
 
 PageSection noise_section(const std::vector<NamedModel>& models) {
-  std::vector<NamedSources> sources;
+  std::vector<plot::NamedSources> sources;
   sources.reserve(models.size());
   for (const NamedModel& one : models) {
     sources.emplace_back(models.size() > 1 ? one.name : "", one.model.comparison.sources);
   }
-  PageSection section{"Is the noise right?", {ChartRow{source_chart("noise", sources)}}};
+  PageSection section{"Is the noise right?", {ChartRow{plot::source_chart("noise", sources)}}};
   ChartRow charts;
   for (std::size_t k = 0; k < models.size(); ++k) {
     const bool alone = models.size() == 1;
-    Chart chart = quantile_chart(alone ? "quantiles" : fmt::format("quantiles-{}", k + 1),
-                                 std::string("Do the errors scatter as stated?") +
-                                     (alone ? "" : " \u2013 " + models[k].name),
-                                 models[k].model.comparison.residuals);
+    plot::Chart chart =
+        plot::quantile_chart(alone ? "quantiles" : fmt::format("quantiles-{}", k + 1),
+                             std::string("Do the errors scatter as stated?") +
+                                 (alone ? "" : " \u2013 " + models[k].name),
+                             models[k].model.comparison.residuals);
     if (chart.layers.size() > 1) charts.push_back(std::move(chart));
-    Chart counted = histogram_chart(
+    plot::Chart counted = plot::histogram_chart(
         alone ? "histogram" : fmt::format("histogram-{}", k + 1),
         std::string("How large are the errors?") + (alone ? "" : " \u2013 " + models[k].name),
         models[k].model.comparison.residuals);
@@ -238,7 +241,7 @@ PageSection noise_section(const NamedModel& model, const FittedNoise& found) {
     sources.push_back({one.name, one.sd / one.stated, one.sd_error / one.stated, 0.0});
   }
   PageSection section = noise_section({model});
-  Chart chart = source_chart("noise", {{"", sources}});
+  plot::Chart chart = plot::source_chart("noise", {{"", sources}});
   chart.title = "Noise as found, over what the model states";
   chart.caption = "1 is as stated. By the noise found the errors scatter as they should.";
   chart.x.title = "found over stated";
@@ -267,9 +270,9 @@ void close_tables(PageContent& page) {
 PageSection legs_section(const std::string& title, const Comparison& comparison) {
   return {title,
           {},
-          {ChartRow{legs_chart("stretch", comparison.worst, LegError::stretch),
-                    legs_chart("orientation", comparison.worst, LegError::orientation)},
-           ChartRow{worst_chart("worst-legs", comparison.worst, kWorstLegs)}}};
+          {ChartRow{plot::legs_chart("stretch", comparison.worst, plot::LegError::stretch),
+                    plot::legs_chart("orientation", comparison.worst, plot::LegError::orientation)},
+           ChartRow{plot::worst_chart("worst-legs", comparison.worst, kWorstLegs)}}};
 }
 
 PageSection trend_section(const std::string& title, const Comparison& result,
@@ -279,12 +282,12 @@ PageSection trend_section(const std::string& title, const Comparison& result,
   std::vector<std::string> without;
   for (const TrendEvidence& one : trends) {
     const Trend& trend = one.trend;
-    const std::string variable = variable_in_words(one.response.variable);
+    const std::string variable = wording::variable_in_words(one.response.variable);
     if (!(trend.p_adjusted < result.level)) {
       without.push_back(variable);
       continue;
     }
-    charts.push_back(response_chart(
+    charts.push_back(plot::response_chart(
         fmt::format("trend-{}", charts.size() + 1), name_in_words(one),
         fmt::format("A trend: it explains {:.2g} % of chi\u00b2 (squared errors over what noise "
                     "makes of them), p {}. Points are what the recordings show, with 95 % "
@@ -304,4 +307,4 @@ PageSection trend_section(const std::string& title, const Comparison& result,
   return section;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// A model with the name that charts and tables call it by.
 struct NamedModel {
@@ -32,7 +32,8 @@ using LeftBy = std::map<std::string, double>;
 /// A staircase down to what noise alone leaves (`floor`, m). `ladder` may be empty: then it is the
 /// two models.
 [[nodiscard]] PageSection gain_section(const NamedModel& before, const NamedModel& after,
-                                       double floor, const std::vector<LadderStep>& ladder = {});
+                                       double floor,
+                                       const std::vector<plot::LadderStep>& ladder = {});
 
 /// The map as each of the models has it, the same millimetres in the same colour, with rings round
 /// the places of these effects.
@@ -55,4 +56,4 @@ void close_tables(PageContent& page);
 [[nodiscard]] PageSection trend_section(const std::string& title, const Comparison& comparison,
                                         const std::vector<TrendEvidence>& trends);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -12,7 +12,7 @@ namespace trussmap {
 namespace {
 
 std::string tenths(double value) {
-  return without_sign_of_nothing(fixed_text(value, 1));
+  return text::without_sign_of_nothing(text::fixed_text(value, 1));
 }
 
 std::string estimates_text(const EffectGain& result, TextStyle style) {

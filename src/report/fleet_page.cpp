@@ -14,6 +14,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 std::string quantity(double value, double sd) {
@@ -83,29 +85,30 @@ PageTable findings_table(const FleetReport& report) {
 
 /// A mark and a 95 % interval per robot, those that `stand_out` apart; lines across.
 template <typename Marks>
-Chart robots_chart(const std::string& id, const std::string& title, const std::string& y,
-                   const FleetCoefficient& one, const std::vector<double>& levels,
-                   const std::string& stand_out, const Marks& marks) {
-  Chart chart;
+plot::Chart robots_chart(const std::string& id, const std::string& title, const std::string& y,
+                         const FleetCoefficient& one, const std::vector<double>& levels,
+                         const std::string& stand_out, const Marks& marks) {
+  plot::Chart chart;
   chart.id = id;
   chart.title = title;
   chart.x.title = "robot, in the order of the table";
   chart.y.title = y;
-  const std::vector<ChartColumn> columns{{"number"}, {"estimate"}, {"from"}, {"to"}, {"robot"}};
-  ChartLayer usual{LayerKind::intervals, "robots", columns, "7"};
-  ChartLayer others{LayerKind::intervals, stand_out, columns, "bad"};
+  const std::vector<plot::ChartColumn> columns{
+      {"number"}, {"estimate"}, {"from"}, {"to"}, {"robot"}};
+  plot::ChartLayer usual{plot::LayerKind::intervals, "robots", columns, "7"};
+  plot::ChartLayer others{plot::LayerKind::intervals, stand_out, columns, "bad"};
   for (std::size_t k = 0; k < one.members.size(); ++k) {
     const auto [there, value, sd, bad] = marks(one.members[k]);
     if (!there) continue;
-    ChartLayer& layer = bad ? others : usual;
+    plot::ChartLayer& layer = bad ? others : usual;
     layer.columns[0].numbers.push_back(static_cast<double>(k + 1));
     layer.columns[1].numbers.push_back(value);
-    layer.columns[2].numbers.push_back(value - kNormal95 * sd);
-    layer.columns[3].numbers.push_back(value + kNormal95 * sd);
+    layer.columns[2].numbers.push_back(value - plot::kNormal95 * sd);
+    layer.columns[3].numbers.push_back(value + plot::kNormal95 * sd);
     layer.columns[4].texts.push_back(one.members[k].robot);
   }
-  chart.layers.push_back({LayerKind::level, "", {{"", levels}}, "faint"});
-  for (ChartLayer* layer : {&usual, &others}) {
+  chart.layers.push_back({plot::LayerKind::level, "", {{"", levels}}, "faint"});
+  for (plot::ChartLayer* layer : {&usual, &others}) {
     if (!layer->columns[0].numbers.empty()) chart.layers.push_back(std::move(*layer));
   }
   return chart;
@@ -118,14 +121,15 @@ struct RobotMark {
   bool stands_out = false;
 };
 
-Chart values_chart(const FleetFinding& finding, const FleetCoefficient& one, std::size_t number) {
+plot::Chart values_chart(const FleetFinding& finding, const FleetCoefficient& one,
+                         std::size_t number) {
   std::vector<double> levels;
   for (const FleetKey& key : one.goes_with) {
     for (const FleetGroup& group : key.groups) levels.push_back(group.mean);
   }
   const bool groups = !levels.empty();
   if (!groups) levels.push_back(one.mean);
-  Chart chart =
+  plot::Chart chart =
       robots_chart(fmt::format("effect-{}", number), heading_of(finding, one), finding.effect, one,
                    levels, "differ or drift", [](const FleetRobot& robot) {
                      return RobotMark{true, robot.value, robot.sd, robot.differs || robot.drifts};
@@ -136,9 +140,10 @@ Chart values_chart(const FleetFinding& finding, const FleetCoefficient& one, std
   return chart;
 }
 
-Chart slopes_chart(const FleetFinding& finding, const FleetCoefficient& one, std::size_t number) {
+plot::Chart slopes_chart(const FleetFinding& finding, const FleetCoefficient& one,
+                         std::size_t number) {
   const std::string title = heading_of(finding, one);
-  Chart chart =
+  plot::Chart chart =
       robots_chart(fmt::format("drift-{}", number), fmt::format("{}: drift", title),
                    fmt::format("{}, per day", finding.effect), one, {one.slope}, "drift",
                    [](const FleetRobot& robot) {

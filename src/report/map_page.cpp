@@ -19,6 +19,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 constexpr std::size_t kMostBars = 2000;
@@ -29,7 +31,7 @@ constexpr double kLoud = 4.0;  // standard deviations at which a bar has the str
 /// A map as it is drawn.
 struct Drawn {
   const BuiltMap& built;
-  MapPicture picture;
+  plot::MapPicture picture;
 
   [[nodiscard]] bool surveyed() const { return built.on_survey.has_value(); }
 };
@@ -50,9 +52,9 @@ Strain strain_of(const LandmarkGraph& map, const Route& route) {
   return strain;
 }
 
-ChartLayer before_layer(const Drawn& drawn) {
-  const MapPicture& picture = drawn.picture;
-  ChartLayer layer{LayerKind::net, "dead reckoning", {{"x [m]"}, {"y [m]"}}, "faint"};
+plot::ChartLayer before_layer(const Drawn& drawn) {
+  const plot::MapPicture& picture = drawn.picture;
+  plot::ChartLayer layer{plot::LayerKind::net, "dead reckoning", {{"x [m]"}, {"y [m]"}}, "faint"};
   for (int k = 0; k < picture.map.routes(); ++k) {
     const Route& route = picture.map.route(k);
     const auto from = picture.before.find(picture.map.landmark(route.source).name);
@@ -67,23 +69,23 @@ ChartLayer before_layer(const Drawn& drawn) {
   return layer;
 }
 
-ChartLayer bar_layer(const Drawn& drawn) {
-  ChartLayer layer{LayerKind::segments,
-                   "",
-                   {{""},
-                    {""},
-                    {""},
-                    {""},
-                    {"from"},
-                    {"to"},
-                    {"driven"},
-                    {"length in the map [m]"},
-                    {"stretched by [mm]"},
-                    {"in standard deviations"}}};
+plot::ChartLayer bar_layer(const Drawn& drawn) {
+  plot::ChartLayer layer{plot::LayerKind::segments,
+                         "",
+                         {{""},
+                          {""},
+                          {""},
+                          {""},
+                          {"from"},
+                          {"to"},
+                          {"driven"},
+                          {"length in the map [m]"},
+                          {"stretched by [mm]"},
+                          {"in standard deviations"}}};
   layer.key = {"shorter than measured", "as measured", "longer than measured"};
-  const MapPicture& picture = drawn.picture;
+  const plot::MapPicture& picture = drawn.picture;
   const auto count = static_cast<std::size_t>(picture.map.routes());
-  for (const std::size_t k : thinned(count, kMostBars)) {
+  for (const std::size_t k : plot::thinned(count, kMostBars)) {
     const Route& route = picture.map.route(static_cast<int>(k));
     const Landmark& source = picture.map.landmark(route.source);
     const Landmark& target = picture.map.landmark(route.target);
@@ -104,10 +106,10 @@ ChartLayer bar_layer(const Drawn& drawn) {
 }
 
 /// Ticks from landmarks along their own axes, as long as a share of the map.
-ChartLayer axis_layer(const Drawn& drawn) {
+plot::ChartLayer axis_layer(const Drawn& drawn) {
   constexpr double kShare = 0.025;
-  const MapPicture& picture = drawn.picture;
-  ChartLayer layer{LayerKind::net, "axis of the landmark", {{"x [m]"}, {"y [m]"}}, "2"};
+  const plot::MapPicture& picture = drawn.picture;
+  plot::ChartLayer layer{plot::LayerKind::net, "axis of the landmark", {{"x [m]"}, {"y [m]"}}, "2"};
   Vector2 low = Vector2::Constant(std::numeric_limits<double>::infinity());
   Vector2 high = -low;
   for (int k = 0; k < picture.map.landmarks(); ++k) {
@@ -129,16 +131,17 @@ ChartLayer axis_layer(const Drawn& drawn) {
   return layer;
 }
 
-void add_landmarks(Chart& chart, const Drawn& drawn) {
-  const MapPicture& picture = drawn.picture;
-  ChartLayer dots{LayerKind::dots,
-                  "landmark",
-                  {{"x [m]"}, {"y [m]"}, {"landmark"}, {"off the survey by [m]"}},
-                  "ink"};
-  ChartLayer truth{
-      LayerKind::dots, "as surveyed", {{"x [m]"}, {"y [m]"}, {"surveyed landmark"}}, "3"};
-  ChartLayer names{LayerKind::labels, "", {{"x [m]"}, {"y [m]"}, {"landmark"}}, "muted"};
-  std::vector<PlacedEllipse> ellipses;
+void add_landmarks(plot::Chart& chart, const Drawn& drawn) {
+  const plot::MapPicture& picture = drawn.picture;
+  plot::ChartLayer dots{plot::LayerKind::dots,
+                        "landmark",
+                        {{"x [m]"}, {"y [m]"}, {"landmark"}, {"off the survey by [m]"}},
+                        "ink"};
+  plot::ChartLayer truth{
+      plot::LayerKind::dots, "as surveyed", {{"x [m]"}, {"y [m]"}, {"surveyed landmark"}}, "3"};
+  plot::ChartLayer names{
+      plot::LayerKind::labels, "", {{"x [m]"}, {"y [m]"}, {"landmark"}}, "muted"};
+  std::vector<plot::PlacedEllipse> ellipses;
   const bool few = static_cast<std::size_t>(picture.map.landmarks()) <= kMostNames;
   const Matrix2 turn = rotation(picture.map_onto_truth.angle);
   for (int k = 0; k < picture.map.landmarks(); ++k) {
@@ -166,16 +169,16 @@ void add_landmarks(Chart& chart, const Drawn& drawn) {
   dots.size = few ? 3.5 : 2.0;
   truth.size = few ? 5.5 : 3.0;
   if (!truth.columns[2].texts.empty()) chart.layers.push_back(std::move(truth));
-  ChartLayer ellipse = ellipse_layer("95 % ellipse", ellipses, "1");
+  plot::ChartLayer ellipse = plot::ellipse_layer("95 % ellipse", ellipses, "1");
   if (!ellipse.columns[0].numbers.empty()) chart.layers.push_back(std::move(ellipse));
-  ChartLayer axes = axis_layer(drawn);
+  plot::ChartLayer axes = axis_layer(drawn);
   if (!axes.columns[0].numbers.empty()) chart.layers.push_back(std::move(axes));
   chart.layers.push_back(std::move(dots));
   if (few) chart.layers.push_back(std::move(names));
 }
 
-Chart map_chart(const Drawn& drawn) {
-  Chart chart;
+plot::Chart map_chart(const Drawn& drawn) {
+  plot::Chart chart;
   chart.id = "map";
   chart.title = "The map, before and after";
   chart.caption =
@@ -189,9 +192,9 @@ Chart map_chart(const Drawn& drawn) {
   chart.y.title = "y [m]";
   chart.equal_aspect = true;
   chart.height = 520.0;
-  ChartLayer before = before_layer(drawn);
+  plot::ChartLayer before = before_layer(drawn);
   if (!before.columns[0].numbers.empty()) chart.layers.push_back(std::move(before));
-  ChartLayer bars = bar_layer(drawn);
+  plot::ChartLayer bars = bar_layer(drawn);
   if (!bars.shade.empty()) chart.layers.push_back(std::move(bars));
   add_landmarks(chart, drawn);
   return chart;
@@ -205,7 +208,7 @@ struct SurveyErrors {
 };
 
 SurveyErrors survey_errors(const Drawn& drawn) {
-  const MapPicture& picture = drawn.picture;
+  const plot::MapPicture& picture = drawn.picture;
   SurveyErrors errors;
   if (!drawn.surveyed()) return errors;
   const std::vector<std::string>& odd = drawn.built.on_survey->comparison.contradicting;
@@ -230,18 +233,18 @@ SurveyErrors survey_errors(const Drawn& drawn) {
   return errors;
 }
 
-Chart survey_chart(const SurveyErrors& errors) {
-  Chart chart;
+plot::Chart survey_chart(const SurveyErrors& errors) {
+  plot::Chart chart;
   chart.id = "survey";
   chart.title = "How far landmarks are from where the survey has them";
   chart.caption =
       "Share of the landmarks within a distance, after the best rotation and translation. Further "
       "to the left is better.";
   chart.x = {.title = "distance [m]", .zero = true};
-  chart.y = {.title = "landmarks within it [%]", .range = Range{0.0, 100.0}};
+  chart.y = {.title = "landmarks within it [%]", .range = plot::Range{0.0, 100.0}};
   chart.height = 420.0;
-  add_shares(chart, "dead reckoning", errors.before, "m", "2");
-  add_shares(chart, "the map", errors.map, "m", "1");
+  plot::add_shares(chart, "dead reckoning", errors.before, "m", "2");
+  plot::add_shares(chart, "the map", errors.map, "m", "1");
   return chart;
 }
 
@@ -266,7 +269,7 @@ PageTable survey_table(const SurveyErrors& errors) {
 
 Page map_page(const BuiltMap& built, const std::string& subject) {
   if (!built.paths.empty()) return path_page(built, subject);
-  const Drawn drawn{built, picture_of(built, "")};
+  const Drawn drawn{built, plot::picture_of(built, "")};
   PageContent page;
   page.command = "build";
   page.subject = subject;
@@ -275,9 +278,10 @@ Page map_page(const BuiltMap& built, const std::string& subject) {
   page.facts.push_back({fmt::format("{:.3f} m", built.quality.median_sd),
                         "standard error of landmarks (median)", page.tone});
   if (built.quality.oriented > 0) {
-    page.facts.push_back({fmt::format("{:.2f}\u00b0", built.quality.median_sd_heading * kDegrees),
-                          fmt::format("standard error of the axes of {} landmarks (median)",
-                                      built.quality.oriented)});
+    page.facts.push_back(
+        {fmt::format("{:.2f}\u00b0", built.quality.median_sd_heading * geometry::kDegrees),
+         fmt::format("standard error of the axes of {} landmarks (median)",
+                     built.quality.oriented)});
   }
   if (built.on_survey) {
     const SurveyComparison& survey = built.on_survey->comparison;

@@ -71,7 +71,7 @@ std::string quality_text(const BuiltMap& built) {
   if (quality.oriented > 0) {
     text += fmt::format("  {:<28} {:>8}  of {}, their axes good to {:.2f} deg (median)\n",
                         "landmarks with orientation", quality.oriented, built.map.landmarks(),
-                        quality.median_sd_heading * kDegrees);
+                        quality.median_sd_heading * geometry::kDegrees);
   }
   if (built.method != Method::adjustment) {
     text += fmt::format("  {:<28} {:>8.3f} m  (rms; the standard errors above are that map's)\n",
@@ -110,14 +110,14 @@ std::string map_text(const BuiltMap& built, const std::string& method, bool seve
   std::string text;
   const bool paths = !built.paths.empty();
   if (paths) {
-    text += paths_headline(built.paths);
+    text += report::paths_headline(built.paths);
   } else {
     text += fmt::format("map of {} landmarks and {} routes, method {}\n", built.map.landmarks(),
                         built.map.routes(), method);
   }
   text += fmt::format("{}\n\n", verdict_text(built.good() ? Mood::good : Mood::doubt,
                                              verdict_in_words(built), style));
-  text += paths ? paths_text(built) : figures_text(built, several);
+  text += paths ? report::paths_text(built) : figures_text(built, several);
   for (std::size_t k = 1; k < built.warnings.size(); ++k) {  // the verdict has the first
     text += fmt::format("\n{}", warning_text(built.warnings[k], style));
   }

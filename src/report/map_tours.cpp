@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::report {
 namespace {
 
 struct TourQuantity {
@@ -23,20 +23,22 @@ struct TourQuantity {
 const TourQuantity kQuantities[] = {
     {"tours-stretch", "Routes too long or too short", "mean stretch error \u03c3 [%]", 100.0,
      [](const MapErrors& errors) { return std::optional(errors.stretch); }},
-    {"tours-orientation", "Routes askew", "mean orientation error \u03c1 [\u00b0]", kDegrees,
-     [](const MapErrors& errors) { return std::optional(errors.orientation); }},
+    {"tours-orientation", "Routes askew", "mean orientation error \u03c1 [\u00b0]",
+     geometry::kDegrees, [](const MapErrors& errors) { return std::optional(errors.orientation); }},
     {"tours-position", "Landmarks off", "mean position error [m]", 1.0,
      [](const MapErrors& errors) { return errors.position; }}};
 
-Chart tours_chart(const std::vector<TourErrors>& tours, const TourQuantity& quantity) {
-  ChartLayer line{LayerKind::line, "", {{"tour"}, {quantity.axis}}, "1"};
-  ChartLayer dots{
-      LayerKind::dots, "", {{"tour"}, {quantity.axis}, {"routes that count"}, {"driven"}}, "1"};
+plot::Chart tours_chart(const std::vector<TourErrors>& tours, const TourQuantity& quantity) {
+  plot::ChartLayer line{plot::LayerKind::line, "", {{"tour"}, {quantity.axis}}, "1"};
+  plot::ChartLayer dots{plot::LayerKind::dots,
+                        "",
+                        {{"tour"}, {quantity.axis}, {"routes that count"}, {"driven"}},
+                        "1"};
   dots.size = 3.5;
   for (std::size_t k = 0; k < tours.size(); ++k) {
     const std::optional<double> error = quantity.pick(tours[k].errors);
     if (!error) continue;
-    for (ChartLayer* layer : {&line, &dots}) {
+    for (plot::ChartLayer* layer : {&line, &dots}) {
       layer->columns[0].numbers.push_back(static_cast<double>(k + 1));
       layer->columns[1].numbers.push_back(quantity.factor * *error);
     }
@@ -44,13 +46,13 @@ Chart tours_chart(const std::vector<TourErrors>& tours, const TourQuantity& quan
     dots.columns[3].texts.emplace_back(tours[k].complete ? "all routes once more"
                                                          : "a part: the recording ends");
   }
-  Chart chart;
+  plot::Chart chart;
   chart.id = quantity.id;
   chart.title = quantity.title;
   chart.caption =
       "Error of the map as it then was, after the best rotation and translation over the survey. "
       "Lower is better.";
-  chart.x = {.title = "tour", .range = Range{0.5, static_cast<double>(tours.size()) + 0.5}};
+  chart.x = {.title = "tour", .range = plot::Range{0.5, static_cast<double>(tours.size()) + 0.5}};
   chart.y = {.title = quantity.axis, .zero = true};
   chart.height = 300.0;
   if (line.columns[0].size() > 1) chart.layers.push_back(std::move(line));
@@ -63,7 +65,7 @@ Chart tours_chart(const std::vector<TourErrors>& tours, const TourQuantity& quan
 PageSection tours_section(const BuiltMap& built) {
   ChartRow charts;
   for (const TourQuantity& one : kQuantities) {
-    Chart chart = tours_chart(built.tours, one);
+    plot::Chart chart = tours_chart(built.tours, one);
     if (chart.layers.back().columns[0].size() > 0) charts.push_back(std::move(chart));
   }
   return {"On the way, tour by tour",
@@ -72,4 +74,4 @@ PageSection tours_section(const BuiltMap& built) {
            std::move(charts)}};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

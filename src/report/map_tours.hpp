@@ -8,9 +8,9 @@
 #include "report/page.hpp"
 #include "trussmap/build_map.hpp"
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// sigma, rho and position error after each tour. `built` has tours.
 [[nodiscard]] PageSection tours_section(const BuiltMap& built);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

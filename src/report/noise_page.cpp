@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 constexpr double kThousand = 1000.0;
@@ -25,10 +27,12 @@ std::string constant_text(const WheelConstant& wheel) {
   return text.value + (text.error.empty() ? "" : " \u00b1 " + text.error);
 }
 
-ChartLayer outline_layer(const std::string& name, const Vector2& centre, const Matrix2& covariance,
-                         const std::string& colour, double reach = ellipse95_scale(2)) {
-  ChartLayer layer{LayerKind::line, name, {{"across"}, {"up"}}, colour};
-  for (const Vector2& p : ellipse_outline(kThousand * centre, covariance, kThousand * reach)) {
+plot::ChartLayer outline_layer(const std::string& name, const Vector2& centre,
+                               const Matrix2& covariance, const std::string& colour,
+                               double reach = ellipse95_scale(2)) {
+  plot::ChartLayer layer{plot::LayerKind::line, name, {{"across"}, {"up"}}, colour};
+  for (const Vector2& p :
+       plot::ellipse_outline(kThousand * centre, covariance, kThousand * reach)) {
     layer.columns[0].numbers.push_back(p.x());
     layer.columns[1].numbers.push_back(p.y());
   }
@@ -36,13 +40,13 @@ ChartLayer outline_layer(const std::string& name, const Vector2& centre, const M
 }
 
 /// One plane of Chong & Kleeman's Figure 4.
-Chart plane_chart(const NoiseCalibration& found, int across, int up) {
+plot::Chart plane_chart(const NoiseCalibration& found, int across, int up) {
   constexpr const char* kLabels[] = {"x error [mm]", "y error [mm]", "heading error [mrad]"};
   constexpr const char* kTitles[] = {"Along and across", "Along and heading", "Across and heading"};
   constexpr const char* kIds[] = {"x-y", "x-heading", "y-heading"};
   const std::vector<int> pick = {across, up};
   const NoiseEstimate& estimate = found.estimate;
-  Chart chart;
+  plot::Chart chart;
   const auto which = static_cast<std::size_t>(across + up - 1);
   chart.id = kIds[which];
   chart.title = kTitles[which];
@@ -55,16 +59,17 @@ Chart plane_chart(const NoiseCalibration& found, int across, int up) {
   chart.x = {.title = kLabels[across], .zero = true};
   chart.y = {.title = kLabels[up], .zero = true};
   chart.height = 340.0;
-  ChartLayer runs{LayerKind::dots, "end errors", {{kLabels[across]}, {kLabels[up]}, {"run"}}, "7"};
+  plot::ChartLayer runs{
+      plot::LayerKind::dots, "end errors", {{kLabels[across]}, {kLabels[up]}, {"run"}}, "7"};
   runs.size = found.errors.size() > 300 ? 2.0 : 3.5;
-  for (const std::size_t k : thinned(found.errors.size(), kMostErrors)) {
+  for (const std::size_t k : plot::thinned(found.errors.size(), kMostErrors)) {
     runs.columns[0].numbers.push_back(kThousand * found.errors[k][across]);
     runs.columns[1].numbers.push_back(kThousand * found.errors[k][up]);
     runs.columns[2].numbers.push_back(static_cast<double>(k + 1));
   }
   const Vector2 centre = estimate.centre(pick);
-  chart.layers.push_back({LayerKind::level, "", {{"", {0.0}}}, "faint"});
-  chart.layers.push_back({LayerKind::upright, "", {{"", {0.0}}}, "faint"});
+  chart.layers.push_back({plot::LayerKind::level, "", {{"", {0.0}}}, "faint"});
+  chart.layers.push_back({plot::LayerKind::upright, "", {{"", {0.0}}}, "faint"});
   chart.layers.push_back(std::move(runs));
   chart.layers.push_back(
       outline_layer("95 % ellipse of the runs", centre, estimate.observed(pick, pick), "ink"));
@@ -88,8 +93,8 @@ PageTable stated_table(const StatedNoise& stated) {
   return table;
 }
 
-Chart constant_chart(const NoiseEstimate& estimate) {
-  Chart chart;
+plot::Chart constant_chart(const NoiseEstimate& estimate) {
+  plot::Chart chart;
   chart.id = "wheels";
   chart.title = "Noise of each wheel";
   chart.caption =
@@ -97,19 +102,19 @@ Chart constant_chart(const NoiseEstimate& estimate) {
       "root of d.";
   chart.x = {.title = "k [10\u207b\u00b3 m^1/2]", .zero = true};
   chart.y.categories = {"left wheel", "right wheel"};
-  chart.height = bars_height(2);
-  ChartColumn value{"k [10^-3 m^1/2]"};
-  ChartColumn low{"95 % from"};
-  ChartColumn high{"to"};
+  chart.height = plot::bars_height(2);
+  plot::ChartColumn value{"k [10^-3 m^1/2]"};
+  plot::ChartColumn low{"95 % from"};
+  plot::ChartColumn high{"to"};
   for (const WheelConstant& wheel : {estimate.left, estimate.right}) {
     const double reach =
-        std::isfinite(wheel.standard_error) ? kNormal95 * wheel.standard_error : 0.0;
+        std::isfinite(wheel.standard_error) ? plot::kNormal95 * wheel.standard_error : 0.0;
     value.numbers.push_back(kThousand * wheel.k);
     low.numbers.push_back(kThousand * std::max(0.0, wheel.k - reach));
     high.numbers.push_back(kThousand * (wheel.k > 0.0 ? wheel.k + reach : wheel.upper_limit));
   }
   chart.layers.push_back(
-      {LayerKind::intervals, "", {{"", {}, chart.y.categories}, value, low, high}, "1"});
+      {plot::LayerKind::intervals, "", {{"", {}, chart.y.categories}, value, low, high}, "1"});
   return chart;
 }
 

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::report {
 
 bool is_wrong(const NoiseSource& source) {
   if (!(source.stated > 0.0)) return source.sd > 0.0;
@@ -37,7 +37,7 @@ struct NoiseUnit {
 
 NoiseUnit unit_of(const NoiseSource& source) {
   if (source.unit == "m^1/2") return {1000.0, " mm after a metre"};
-  const ShownUnit unit = shown_unit(source.unit);
+  const wording::ShownUnit unit = wording::shown_unit(source.unit);
   return {unit.factor, unit.name.starts_with("\u00b0") ? unit.name : " " + unit.name};
 }
 
@@ -84,4 +84,4 @@ std::string noisier_than_stated(const Comparison& comparison) {
   return listed(noisy);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

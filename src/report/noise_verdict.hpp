@@ -9,7 +9,7 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// Noise that is found so many times what is stated, or the other way round, is as stated: no map
 /// and no forecast differs to speak of.
@@ -31,4 +31,4 @@ inline constexpr double kNoiseAsStated = 1.2;
 /// noisier than stated; empty where none is.
 [[nodiscard]] std::string noisier_than_stated(const Comparison& comparison);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

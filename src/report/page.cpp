@@ -15,6 +15,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 const char* class_of(Tone tone) {
@@ -27,17 +29,17 @@ const char* sign_of(Tone tone) {
 }
 
 std::string element(const char* name, const std::string& text) {
-  return fmt::format("<{0}>{1}</{0}>\n", name, xml_escaped(text));
+  return fmt::format("<{0}>{1}</{0}>\n", name, text::xml_escaped(text));
 }
 
-long pixels_of(const Chart& chart) {
+long pixels_of(const plot::Chart& chart) {
   return std::lround(chart.height);
 }
 
 /// Room for the charts before they are drawn; attributes may hold no style.
 std::string heights(const PageContent& page) {
   std::set<long> heights;
-  for (const Chart* chart : charts_of(page)) heights.insert(pixels_of(*chart));
+  for (const plot::Chart* chart : charts_of(page)) heights.insert(pixels_of(*chart));
   std::string text;
   for (const long height : heights) {
     text += fmt::format(".tall-{0} {{ min-height: {0}px; }}\n", height);
@@ -46,14 +48,14 @@ std::string heights(const PageContent& page) {
 }
 
 /// A chart as a picture.
-std::string drawn(const Chart& chart) {
-  const std::string svg = draw_chart(chart);
+std::string drawn(const plot::Chart& chart) {
+  const std::string svg = plot::draw_chart(chart);
   return fmt::format("<figure>\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
-                     svg.substr(svg.find("<svg")), xml_escaped(chart.caption));
+                     svg.substr(svg.find("<svg")), text::xml_escaped(chart.caption));
 }
 
 /// A figure of a chart: its caption and data are in the page, the script draws it.
-std::string html(const Chart& chart) {
+std::string html(const plot::Chart& chart) {
   return fmt::format(
       "<figure class=\"chart\" id=\"{0}\">\n"
       "<h3>{1}</h3>\n"
@@ -61,24 +63,25 @@ std::string html(const Chart& chart) {
       "<figcaption>{3}</figcaption>\n"
       "<script type=\"application/json\">{4}</script>\n"
       "</figure>\n",
-      xml_escaped(chart.id), xml_escaped(chart.title), pixels_of(chart), xml_escaped(chart.caption),
-      chart_json(chart));
+      text::xml_escaped(chart.id), text::xml_escaped(chart.title), pixels_of(chart),
+      text::xml_escaped(chart.caption), plot::chart_json(chart));
 }
 
 std::string html(const PageTable& table) {
   std::string text = "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"" +
-                     xml_escaped(table.caption) + "\"><table>\n" +
+                     text::xml_escaped(table.caption) + "\"><table>\n" +
                      (table.caption.empty() ? "" : element("caption", table.caption));
   const auto cell = [&table](std::size_t column) {
     return column < table.texts ? "" : " class=\"number\"";
   };
   // On a narrow screen a row is a card, with the headings beside its cells.
   const auto heading = [&table](std::size_t column) {
-    return column < table.headings.size() ? xml_escaped(table.headings[column]) : "";
+    return column < table.headings.size() ? text::xml_escaped(table.headings[column]) : "";
   };
   text += "<thead><tr>";
   for (std::size_t k = 0; k < table.headings.size(); ++k) {
-    text += fmt::format("<th scope=\"col\"{}>{}</th>", cell(k), xml_escaped(table.headings[k]));
+    text +=
+        fmt::format("<th scope=\"col\"{}>{}</th>", cell(k), text::xml_escaped(table.headings[k]));
   }
   text += "</tr></thead>\n<tbody>\n";
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
@@ -86,7 +89,7 @@ std::string html(const PageTable& table) {
     text += fmt::format("<tr class=\"{}\">", class_of(tone));
     for (std::size_t k = 0; k < table.rows[row].size(); ++k) {
       text += fmt::format("<td{} data-heading=\"{}\">{}{}</td>", cell(k), heading(k),
-                          k == 0 ? sign_of(tone) : "", xml_escaped(table.rows[row][k]));
+                          k == 0 ? sign_of(tone) : "", text::xml_escaped(table.rows[row][k]));
     }
     text += "</tr>\n";
   }
@@ -101,7 +104,7 @@ struct BlockText {
   std::string operator()(const ChartRow& charts) const {
     std::string text =
         fmt::format("<div class=\"charts {}\">\n", charts.size() > 1 ? "many" : "one");
-    for (const Chart& chart : charts) text += pictures ? drawn(chart) : html(chart);
+    for (const plot::Chart& chart : charts) text += pictures ? drawn(chart) : html(chart);
     return text + "</div>\n";
   }
 };
@@ -125,7 +128,7 @@ std::string html(const PageSection& section, bool pictures = false) {
   text += fmt::format(
       "<details class=\"more\"><summary>Details<span class=\"unseen\">: {}</span>"
       "</summary>\n",
-      xml_escaped(section.title));
+      text::xml_escaped(section.title));
   for (const PageBlock& block : section.details) text += std::visit(BlockText{pictures}, block);
   return text + "</details>\n";
 }
@@ -134,13 +137,14 @@ std::string first_screen(const PageContent& page) {
   std::string text = fmt::format(
       "<header class=\"{}\">\n<p class=\"command\">{}trussmap {} <span>{}</span></p>\n"
       "<h1>{}</h1>\n",
-      class_of(page.tone), tone_words(page.tone), xml_escaped(page.command),
-      xml_escaped(page.subject), xml_escaped(page.verdict));
+      class_of(page.tone), tone_words(page.tone), text::xml_escaped(page.command),
+      text::xml_escaped(page.subject), text::xml_escaped(page.verdict));
   if (!page.facts.empty()) {
     text += "<dl class=\"facts\">\n";
     for (const PageFact& fact : page.facts) {
       text += fmt::format("<div class=\"{}\"><dt>{}</dt><dd>{}{}</dd></div>\n", class_of(fact.tone),
-                          xml_escaped(fact.what), sign_of(fact.tone), xml_escaped(fact.value));
+                          text::xml_escaped(fact.what), sign_of(fact.tone),
+                          text::xml_escaped(fact.value));
     }
     text += "</dl>\n";
   }
@@ -176,7 +180,7 @@ std::string contents(const PageContent& page) {
   std::string text = "<nav aria-label=\"Sections\"><ul>\n";
   for (std::size_t k = 0; k < page.sections.size(); ++k) {
     text += fmt::format("<li><a href=\"#section-{}\">{}</a></li>\n", k + 1,
-                        xml_escaped(page.sections[k].title));
+                        text::xml_escaped(page.sections[k].title));
   }
   return text + "</ul></nav>\n";
 }
@@ -189,7 +193,7 @@ std::string foot(const PageContent& page) {
   if (page.provenance) {
     const Provenance& from = *page.provenance;
     text += "<details class=\"more\"><summary>How this page was made; how to cite it</summary>\n";
-    text += fmt::format("<pre>{}</pre>\n", xml_escaped(from.command));
+    text += fmt::format("<pre>{}</pre>\n", text::xml_escaped(from.command));
     PageTable table;
     table.headings = {"", ""};
     table.texts = 2;
@@ -203,12 +207,16 @@ std::string foot(const PageContent& page) {
         "<pre>@software{{trussmap,\n  title = {{trussmap: landmark maps as elastic trusses, and "
         "criticism of odometry models}},\n  author = {{The trussmap authors}},\n  version = "
         "{{{}}},\n  year = {{{}}}\n}}</pre>\n</details>\n",
-        xml_escaped(from.version), from.date.substr(0, 4));
+        text::xml_escaped(from.version), from.date.substr(0, 4));
   }
   return text + "</footer>\n";
 }
 
 }  // namespace
+
+}  // namespace trussmap
+
+namespace trussmap::report {
 
 PageSection told_section(std::string title, std::vector<std::string> sentences, ChartRow charts) {
   PageSection section{std::move(title), {}};
@@ -217,14 +225,14 @@ PageSection told_section(std::string title, std::vector<std::string> sentences, 
   return section;
 }
 
-std::vector<const Chart*> charts_of(const PageContent& page) {
-  std::vector<const Chart*> charts;
+std::vector<const plot::Chart*> charts_of(const PageContent& page) {
+  std::vector<const plot::Chart*> charts;
   for (const PageSection& section : page.sections) {
     for (const std::vector<PageBlock>* blocks : {&section.blocks, &section.details}) {
       for (const PageBlock& block : *blocks) {
         const auto* row = std::get_if<ChartRow>(&block);
         if (row == nullptr) continue;
-        for (const Chart& chart : *row) charts.push_back(&chart);
+        for (const plot::Chart& chart : *row) charts.push_back(&chart);
       }
     }
   }
@@ -233,7 +241,7 @@ std::vector<const Chart*> charts_of(const PageContent& page) {
 
 std::string render_page(const PageContent& page, const PageRuntime& runtime) {
   std::set<std::string> ids;
-  for (const Chart* chart : charts_of(page)) {
+  for (const plot::Chart* chart : charts_of(page)) {
     if (!ids.insert(chart->id).second) {
       throw std::invalid_argument("two charts of a page are called " + chart->id);
     }
@@ -263,6 +271,10 @@ std::string render_page(const PageContent& page, const PageRuntime& runtime) {
   text += fmt::format("<script>{}</script>\n</body>\n</html>\n", runtime.script);
   return text;
 }
+
+}  // namespace trussmap::report
+
+namespace trussmap {
 
 Page with_provenance(const Page& page, const Provenance& provenance) {
   PageContent content = page.content();
@@ -305,8 +317,8 @@ std::string render_plain_page(const Page& page) {
 
 std::vector<DrawnChart> draw_charts(const Page& page) {
   std::vector<DrawnChart> charts;
-  for (const Chart* chart : charts_of(page.content())) {
-    charts.push_back({chart->id, draw_chart(*chart)});
+  for (const plot::Chart* chart : charts_of(page.content())) {
+    charts.push_back({chart->id, plot::draw_chart(*chart)});
   }
   return charts;
 }

@@ -22,7 +22,7 @@
 #include <variant>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::report {
 
 enum class Tone { neutral, good, bad };
 
@@ -46,7 +46,7 @@ struct PageTable {
 };
 
 /// Side by side where there is room; one alone takes the whole width.
-using ChartRow = std::vector<Chart>;
+using ChartRow = std::vector<plot::Chart>;
 using PageBlock = std::variant<std::string, PageTable, ChartRow>;
 
 struct PageSection {
@@ -75,6 +75,6 @@ struct PageContent {
 [[nodiscard]] std::string render_page(const PageContent& page, const PageRuntime& runtime);
 
 /// All charts of a page, in order.
-[[nodiscard]] std::vector<const Chart*> charts_of(const PageContent& page);
+[[nodiscard]] std::vector<const plot::Chart*> charts_of(const PageContent& page);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -17,7 +17,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::report {
 namespace {
 
 void replace_all(std::string& text, const std::string& what, const std::string& by) {
@@ -103,7 +103,7 @@ SizeText size_text_of(const EffectEvidence& effect) {
     return {(text.error.empty() ? two_digits(lag) : text.value) + " ms",
             text.error.empty() ? "" : text.error + " ms"};
   }
-  const ShownUnit unit = shown_unit(channel_unit(one));
+  const wording::ShownUnit unit = wording::shown_unit(channel_unit(one));
   const double least = effect.range.least;
   const double most = effect.range.most;
   const double size = unit.factor * std::max(std::abs(least), std::abs(most));
@@ -168,7 +168,7 @@ std::string how_large(const EffectEvidence& effect) {
     return sized_in_words(effect);
   }
   return fmt::format("{}: {}{}.", capitalised(name_in_words(fitted.effect)),
-                     typeset(in_words(fitted.effect, fitted.sd)), doubt_of(fitted));
+                     typeset(trussmap::in_words(fitted.effect, fitted.sd)), doubt_of(fitted));
 }
 
 std::string sized_in_words(const EffectEvidence& effect) {
@@ -180,7 +180,8 @@ std::string sized_in_words(const EffectEvidence& effect) {
 }
 
 std::string advised_drive(const Advice& advice) {
-  if (advice.drive.empty()) return "A drive that would show more: " + in_words(advice) + ".";
+  if (advice.drive.empty())
+    return "A drive that would show more: " + trussmap::in_words(advice) + ".";
   return fmt::format("A drive that would show more: {} ({}: {}).", advice.drive, advice.lack,
                      advice.why);
 }
@@ -212,7 +213,7 @@ std::string what_it_is(const Effect& effect) {
 }
 
 std::string what_helps(const Effect& effect) {
-  const CatalogueEntry* entry = usual_entry(effect);
+  const CatalogueEntry* entry = wording::usual_entry(effect);
   if (entry == nullptr) return "";
   return fmt::format("Against {} for good: {}.", short_name(effect), entry->remedy);
 }
@@ -231,7 +232,7 @@ std::vector<std::string> unseen_names(const Diagnosis& diagnosis) {
 }
 
 std::string with_judged(const std::string& verdict, const UsedSightings& sightings) {
-  const std::string by = in_words(sightings);
+  const std::string by = trussmap::in_words(sightings);
   return by.empty() ? verdict : verdict + " " + capitalised(by) + ".";
 }
 
@@ -256,7 +257,7 @@ std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& riva
       nearest = std::min(nearest, rival.behind);
       continue;
     }
-    const CatalogueEntry* entry = usual_entry(rival.effect);
+    const CatalogueEntry* entry = wording::usual_entry(rival.effect);
     names.push_back(name_in_words(rival.effect) +
                     (entry == nullptr ? "" : " (" + std::string(entry->cause) + ")"));
   }
@@ -297,20 +298,21 @@ std::vector<std::string> others_notes(const Diagnosis& diagnosis, const std::str
     notes.push_back(
         fmt::format("The noise is not as the model states it: {}. All is judged by the "
                     "noise as estimated; {}.",
-                    typeset(in_words(diagnosis.under->noise)), who_states));
+                    typeset(trussmap::in_words(diagnosis.under->noise)), who_states));
   }
   for (const NoiseTest& one : diagnosis.noise) {
     if (one.p_adjusted >= diagnosis.level || !notes.empty()) continue;
-    notes.push_back(
-        fmt::format("More noise than the model states ({}): {}.", one.law, typeset(in_words(one))));
+    notes.push_back(fmt::format("More noise than the model states ({}): {}.", one.law,
+                                typeset(trussmap::in_words(one))));
     break;
   }
   for (const EventTest& one : diagnosis.events) {
     if (one.p_adjusted >= diagnosis.level) continue;
-    notes.push_back(fmt::format("A single event stands out: {}.", typeset(in_words(one))));
+    notes.push_back(
+        fmt::format("A single event stands out: {}.", typeset(trussmap::in_words(one))));
     break;
   }
   return notes;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// The words of reports with the signs that a page has: "±" and "°".
 [[nodiscard]] std::string typeset(std::string text);
@@ -28,7 +28,8 @@ template <class Told>
 [[nodiscard]] std::vector<std::string> sentences_of(const std::vector<Told>& all) {
   std::vector<std::string> sentences;
   sentences.reserve(all.size());
-  for (const Told& one : all) sentences.push_back(typeset(capitalised(in_words(one)) + "."));
+  for (const Told& one : all)
+    sentences.push_back(typeset(capitalised(trussmap::in_words(one)) + "."));
   return sentences;
 }
 
@@ -108,4 +109,4 @@ void shorten(std::vector<std::string>& names);
     const Diagnosis& diagnosis,
     const std::string& who_states = "fit --noise and discover write it with --out");
 
-}  // namespace trussmap
+}  // namespace trussmap::report

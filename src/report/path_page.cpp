@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::report {
 namespace {
 
 /// The fixes and loops that are furthest off among those left out.
@@ -84,10 +84,10 @@ Page path_page(const BuiltMap& built, const std::string& subject) {
   if (!built.good()) page.notes.assign(built.warnings.begin() + 1, built.warnings.end());
   std::transform(page.notes.begin(), page.notes.end(), page.notes.begin(), typeset);
   page.notes.insert(page.notes.end(), built.notes.begin(), built.notes.end());
-  page.sections.push_back({"The path", {ChartRow{path_chart(built.paths)}}});
+  page.sections.push_back({"The path", {ChartRow{plot::path_chart(built.paths)}}});
   PageTable table = left_out_table(built.paths);
   if (!table.rows.empty()) page.sections.push_back({"Left out", {std::move(table)}});
   return page;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -9,9 +9,9 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// `built` has paths.
 [[nodiscard]] Page path_page(const BuiltMap& built, const std::string& subject);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::report {
 namespace {
 
 constexpr std::size_t kLeftOutShown = 10;
@@ -107,4 +107,4 @@ std::string paths_text(const BuiltMap& built) {
   return text;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

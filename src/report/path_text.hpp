@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::report {
 
 [[nodiscard]] std::string paths_headline(const std::vector<BuiltPath>& paths);
 /// The figures; `built` has paths.
 [[nodiscard]] std::string paths_text(const BuiltMap& built);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -7,16 +7,16 @@
 namespace trussmap {
 
 std::string map_picture(const BuiltMap& built, const std::string& title) {
-  return draw_map(picture_of(built, title));
+  return plot::draw_map(plot::picture_of(built, title));
 }
 
 std::string square_picture(const std::vector<SquareRuns>& rounds, double side) {
-  return draw_figure(square_figure(rounds, side));
+  return plot::draw_figure(plot::square_figure(rounds, side));
 }
 
 std::string noise_picture(const EndErrors& errors, const NoiseEstimate& estimate,
                           const std::optional<StatedNoise>& stated) {
-  return draw_figure(noise_figure(errors, estimate, stated));
+  return plot::draw_figure(plot::noise_figure(errors, estimate, stated));
 }
 
 }  // namespace trussmap

@@ -15,22 +15,23 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::report {
 namespace {
 
 constexpr double kFieldHeight = 480.0;  // pixels
 constexpr double kFieldWidth = 560.0;   // that the marks have, about
 
 /// Cells as dots: large where the field is known, small where hardly anything is.
-ChartLayer cells_layer(const FieldOfPlaces& field, const ShownUnit& unit, double most, bool known) {
+plot::ChartLayer cells_layer(const FieldOfPlaces& field, const wording::ShownUnit& unit,
+                             double most, bool known) {
   constexpr double kKnown = 0.6;  // of the field's size
   const double scale = std::min(kFieldWidth / field.columns, (kFieldHeight - 80.0) / field.rows);
-  ChartLayer layer{LayerKind::dots,
-                   known ? "known well" : "uncertain",
-                   {{"x [m]"},
-                    {"y [m]"},
-                    {fmt::format("value [{}]", unit.name)},
-                    {fmt::format("standard error [{}]", unit.name)}}};
+  plot::ChartLayer layer{plot::LayerKind::dots,
+                         known ? "known well" : "uncertain",
+                         {{"x [m]"},
+                          {"y [m]"},
+                          {fmt::format("value [{}]", unit.name)},
+                          {fmt::format("standard error [{}]", unit.name)}}};
   layer.size = (known ? 0.45 : 0.2) * scale;
   for (const FieldCell& one : field.cells_driven()) {
     if ((one.sd < kKnown * field.size) != known) continue;
@@ -43,11 +44,11 @@ ChartLayer cells_layer(const FieldOfPlaces& field, const ShownUnit& unit, double
   return layer;
 }
 
-Chart field_chart(const FieldOfPlaces& field) {
-  const ShownUnit unit = shown_unit(std::string(facts_of(field.channel).unit));
+plot::Chart field_chart(const FieldOfPlaces& field) {
+  const wording::ShownUnit unit = wording::shown_unit(std::string(facts_of(field.channel).unit));
   const double most = std::max(field.most(), 1e-300);
-  Chart chart;
-  chart.id = fmt::format("places-{}", name_of(field.channel));
+  plot::Chart chart;
+  chart.id = fmt::format("places-{}", trussmap::name_of(field.channel));
   chart.title = capitalised(field_in_words(field.channel));
   chart.caption =
       "What it is near each place that the robot drove over, less its mean over the way: the mean "
@@ -58,7 +59,7 @@ Chart field_chart(const FieldOfPlaces& field) {
   chart.equal_aspect = true;
   chart.height = kFieldHeight;
   for (const bool known : {true, false}) {
-    ChartLayer layer = cells_layer(field, unit, most, known);
+    plot::ChartLayer layer = cells_layer(field, unit, most, known);
     if (layer.shade.empty()) continue;
     if (chart.layers.empty()) {
       layer.key = {fmt::format("{:.2g} {}", -unit.factor * most, unit.name), "as on average",
@@ -75,7 +76,7 @@ std::string places_text(const Diagnosis& diagnosis) {
   std::string text;
   for (const FieldOfPlaces& one : diagnosis.places) {
     if (text.empty()) text = "\nWhat differs from place to place\n";
-    text += fmt::format("  {} (p {})\n", in_words(one), probability_text(one.p_value));
+    text += fmt::format("  {} (p {})\n", trussmap::in_words(one), probability_text(one.p_value));
   }
   return text;
 }
@@ -88,4 +89,4 @@ void add_places(const Diagnosis& diagnosis, PageContent& page) {
                                        sentences_of(diagnosis.places), std::move(charts)));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -9,7 +9,7 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// A line each; empty where none differs.
 [[nodiscard]] std::string places_text(const Diagnosis& diagnosis);
@@ -17,4 +17,4 @@ namespace trussmap {
 /// A sentence and a map of each; none where none differs.
 void add_places(const Diagnosis& diagnosis, PageContent& page);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -122,7 +122,7 @@ std::string effects_part(const PlannedDrive& drive, TextStyle style) {
 
 std::string turn_text(const Waypoint& one) {
   if (one.turn == 0.0) return "";
-  const double degrees = kDegrees * one.turn;
+  const double degrees = geometry::kDegrees * one.turn;
   if (std::abs(degrees) < 0.5) return "";
   return fmt::format("{:.0f} deg {} at {:g} rad/s", std::abs(degrees),
                      degrees > 0.0 ? "left" : "right", one.turn_rate);

@@ -34,7 +34,7 @@ std::string poses_text(const std::vector<TimedPose>& poses, bool adjusted) {
       adjusted ? "adjusted with everything that was measured, in the map's frame"
                : "dead reckoned from (0, 0, 0)",
       std::sqrt(end.covariance(0, 0) + end.covariance(1, 1)),
-      std::sqrt(end.covariance(2, 2)) * kDegrees);
+      std::sqrt(end.covariance(2, 2)) * geometry::kDegrees);
 }
 
 std::string lasting_noise_text(const Noise& noise, TextStyle style) {

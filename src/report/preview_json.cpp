@@ -14,22 +14,25 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 using nlohmann::ordered_json;
 
-Chart chart_of(const EffectPreview& preview) {
+plot::Chart chart_of(const EffectPreview& preview) {
   const EffectEvidence& evidence = preview.evidence;
-  std::vector<NamedCurve> rivals;
+  std::vector<plot::NamedCurve> rivals;
   for (std::size_t k = 0; k < evidence.rivals.size() && k < evidence.response.rivals.size(); ++k) {
     rivals.push_back({name_in_words(evidence.rivals[k]), evidence.response.rivals[k]});
   }
   const std::string name = name_in_words(evidence.estimate.effect);
-  return response_chart("plot", "The error against its cause",
-                        "Dots with 95 % intervals: this error as the recordings show it, beside "
-                        "what else the model has. The line: " +
-                            name + (rivals.empty() ? "." : "; dashed: what it is set against."),
-                        evidence.response, name, rivals);
+  return plot::response_chart(
+      "plot", "The error against its cause",
+      "Dots with 95 % intervals: this error as the recordings show it, beside "
+      "what else the model has. The line: " +
+          name + (rivals.empty() ? "." : "; dashed: what it is set against."),
+      evidence.response, name, rivals);
 }
 
 /// How a duel ends.

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::report {
 
 std::vector<std::string> quantity_cells(const Estimate& estimate) {
   const QuantityText text = quantity_text(estimate.value, estimate.standard_error);
@@ -28,4 +28,4 @@ std::vector<std::vector<std::string>> sigma_rows(const StatedNoise& stated) {
   return rows;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

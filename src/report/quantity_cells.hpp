@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// The value, and "\u00b1" with its standard error; empty without one.
 [[nodiscard]] std::vector<std::string> quantity_cells(const Estimate& estimate);
@@ -20,4 +20,4 @@ namespace trussmap {
 [[nodiscard]] std::vector<std::string> sigma_heading();
 [[nodiscard]] std::vector<std::vector<std::string>> sigma_rows(const StatedNoise& stated);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::report {
 
 std::vector<PageAnswer> answers_of(const ResultRows& rows) {
   const std::pair<const char*, const std::vector<std::string>&> all[] = {
@@ -21,4 +21,4 @@ std::vector<PageAnswer> answers_of(const ResultRows& rows) {
   return answers;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

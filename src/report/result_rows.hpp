@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::report {
 
 inline constexpr const char* kMissing = "What is missing?";
 inline constexpr const char* kHowLarge = "How large?";
@@ -32,4 +32,4 @@ struct ResultRows {
 /// Six questions, each with an answer at least.
 [[nodiscard]] std::vector<PageAnswer> answers_of(const ResultRows& rows);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::report {
 namespace {
 
 constexpr std::size_t kMostNamed = 5;  // of one effect and its rivals, in a headline
@@ -77,8 +77,9 @@ std::vector<std::string> rival_sentences(const Effect& effect, const std::vector
   constexpr double kBehind = 1.0;  // of chi^2
   std::vector<std::string> behind, level;
   for (const NearRival& one : near) {
-    const std::string legs = fmt::format("{} ({:.1f} mm", name_in_words(one.finding->effect),
-                                         kMillimetres * one.finding->held_out.arrival_rms);
+    const std::string legs =
+        fmt::format("{} ({:.1f} mm", name_in_words(one.finding->effect),
+                    geometry::kMillimetres * one.finding->held_out.arrival_rms);
     if (one.behind < kBehind) {
       level.push_back(legs + ")");
     } else {
@@ -155,4 +156,4 @@ std::string drive_that_shows_more(const Diagnosis& diagnosis) {
   return "";
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

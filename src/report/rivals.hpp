@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::report {
 
 struct NearRival {
   const Finding* finding = nullptr;
@@ -40,4 +40,4 @@ struct NearRival {
 /// What to drive where nothing is missing.
 [[nodiscard]] std::string drive_that_shows_more(const Diagnosis& diagnosis);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::report {
 namespace {
 
 /// What noise alone would leave, whose noise that is, and whether the model explains the rest: with
@@ -117,7 +117,8 @@ std::optional<LocalGain> local_gain(const HeldOut& before, const HeldOut& after)
 
 std::string in_words(const LocalGain& gain) {
   return fmt::format("{} of {} legs unchanged, the worst {:.0f} \u2192 {:.0f} mm", gain.unchanged,
-                     gain.legs, kMillimetres * gain.worst_before, kMillimetres * gain.worst_after);
+                     gain.legs, geometry::kMillimetres * gain.worst_before,
+                     geometry::kMillimetres * gain.worst_after);
 }
 
 std::vector<std::string> off_sentences(const ModelEvidence& before, const std::string& noise) {
@@ -132,4 +133,4 @@ std::vector<std::string> off_sentences(const ModelEvidence& before, const ModelE
   return sentences(before, &after, with, {floor, noise, after.comparison.consistent()});
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

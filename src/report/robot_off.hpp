@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// Whether held-out legs end as far off as noise lets one expect (`floor`, m; 0: unknown), to
 /// within three standard errors of a root mean square. Legs that end far nearer say that the noise
@@ -46,4 +46,4 @@ struct LocalGain {
                                                      const std::string& with, double floor,
                                                      const std::string& noise = "its noise");
 
-}  // namespace trussmap
+}  // namespace trussmap::report

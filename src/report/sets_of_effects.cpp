@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::report {
 namespace {
 
 constexpr std::size_t kMostSets = 4;     // in the text
@@ -93,7 +93,7 @@ PageTable sets_table(const Diagnosis& diagnosis) {
     if (table.rows.size() == kMostRows) break;
     std::vector<std::string> sizes;
     for (const ExplainingEffect& effect : one.effects) {
-      sizes.push_back(typeset(in_words(effect.effect, effect.sd)));
+      sizes.push_back(typeset(trussmap::in_words(effect.effect, effect.sd)));
     }
     table.rows.push_back({set_in_words(one) + (one.named ? " \u2013 named above" : ""),
                           fmt::format("{}", fmt::join(sizes, "; ")),
@@ -114,4 +114,4 @@ std::string chances_note(const Diagnosis& diagnosis) {
       chances_in_words(all));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -9,7 +9,7 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// The best few sets with their probabilities, and how likely each effect is; empty where nothing
 /// is missing.
@@ -21,4 +21,4 @@ namespace trussmap {
 /// "Part of the explanation: hard iron (or body tilt) with probability 0.99, ..."; empty likewise.
 [[nodiscard]] std::string chances_note(const Diagnosis& diagnosis);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

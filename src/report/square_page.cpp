@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 constexpr std::size_t kMostRuns = 2000;
@@ -22,20 +24,21 @@ std::string with_error(const Estimate& estimate, const char* unit) {
          (unit[0] == '\0' ? "" : std::string(" ") + unit);
 }
 
-void add_cluster(Chart& chart, const std::vector<Eigen::Vector2d>& runs, const SampleMean& mean,
-                 const std::string& name, const std::string& colour) {
-  ChartLayer dots{
-      LayerKind::dots, name + " runs", {{"x error [mm]"}, {"y error [mm]"}, {"run"}}, colour};
-  for (const std::size_t k : thinned(runs.size(), kMostRuns)) {
-    dots.columns[0].numbers.push_back(kMillimetres * runs[k].x());
-    dots.columns[1].numbers.push_back(kMillimetres * runs[k].y());
+void add_cluster(plot::Chart& chart, const std::vector<Eigen::Vector2d>& runs,
+                 const SampleMean& mean, const std::string& name, const std::string& colour) {
+  plot::ChartLayer dots{
+      plot::LayerKind::dots, name + " runs", {{"x error [mm]"}, {"y error [mm]"}, {"run"}}, colour};
+  for (const std::size_t k : plot::thinned(runs.size(), kMostRuns)) {
+    dots.columns[0].numbers.push_back(geometry::kMillimetres * runs[k].x());
+    dots.columns[1].numbers.push_back(geometry::kMillimetres * runs[k].y());
     dots.columns[2].numbers.push_back(static_cast<double>(k + 1));
   }
   chart.layers.push_back(std::move(dots));
-  ChartLayer centre = ellipse_layer(
-      "",
-      {{name + " centre", kMillimetres * mean.mean, kMillimetres * kMillimetres * mean.covariance}},
-      colour);
+  plot::ChartLayer centre =
+      plot::ellipse_layer("",
+                          {{name + " centre", geometry::kMillimetres * mean.mean,
+                            geometry::kMillimetres * geometry::kMillimetres * mean.covariance}},
+                          colour);
   if (centre.columns[0].numbers.empty()) return;
   centre.columns[0].name = "x [mm]";
   centre.columns[1].name = "y [mm]";
@@ -45,34 +48,36 @@ void add_cluster(Chart& chart, const std::vector<Eigen::Vector2d>& runs, const S
   chart.layers.push_back(std::move(centre));
 }
 
-ChartLayer circle_layer(double radius) {
-  ChartLayer layer{
-      LayerKind::line, "distance of the farther centre", {{"x [mm]"}, {"y [mm]"}}, "faint"};
+plot::ChartLayer circle_layer(double radius) {
+  plot::ChartLayer layer{
+      plot::LayerKind::line, "distance of the farther centre", {{"x [mm]"}, {"y [mm]"}}, "faint"};
   layer.dashed = true;
   layer.size = 1.5;
-  for (const Vector2& p : ellipse_outline(Vector2::Zero(), Matrix2::Identity(), radius)) {
+  for (const Vector2& p : plot::ellipse_outline(Vector2::Zero(), Matrix2::Identity(), radius)) {
     layer.columns[0].numbers.push_back(p.x());
     layer.columns[1].numbers.push_back(p.y());
   }
   return layer;
 }
 
-Chart round_chart(const SquareRound& round, std::size_t number, std::size_t rounds, double reach) {
-  Chart chart;
+plot::Chart round_chart(const SquareRound& round, std::size_t number, std::size_t rounds,
+                        double reach) {
+  plot::Chart chart;
   chart.id = fmt::format("round-{}", number);
   chart.title = rounds > 1 ? fmt::format("Round {}: where the robot stopped", number)
                            : "Where the robot stopped after the square";
   chart.caption = fmt::format(
       "Stopping positions, measured less calculated; ellipses hold the centres with 95 % "
       "confidence. The farther centre is {:.0f} mm from where the odometry had it.",
-      kMillimetres * round.clusters.largest_offset.value);
-  chart.x = {.title = "x error [mm]", .range = Range{-reach, reach}};
-  chart.y = {.title = "y error [mm]", .range = Range{-reach, reach}};
+      geometry::kMillimetres * round.clusters.largest_offset.value);
+  chart.x = {.title = "x error [mm]", .range = plot::Range{-reach, reach}};
+  chart.y = {.title = "y error [mm]", .range = plot::Range{-reach, reach}};
   chart.equal_aspect = true;
   chart.height = rounds > 1 ? 360.0 : 460.0;
-  chart.layers.push_back({LayerKind::level, "", {{"", {0.0}}}, "faint"});
-  chart.layers.push_back({LayerKind::upright, "", {{"", {0.0}}}, "faint"});
-  chart.layers.push_back(circle_layer(kMillimetres * round.clusters.largest_offset.value));
+  chart.layers.push_back({plot::LayerKind::level, "", {{"", {0.0}}}, "faint"});
+  chart.layers.push_back({plot::LayerKind::upright, "", {{"", {0.0}}}, "faint"});
+  chart.layers.push_back(
+      circle_layer(geometry::kMillimetres * round.clusters.largest_offset.value));
   add_cluster(chart, round.runs.cw, round.clusters.cw, "cw", "2");
   add_cluster(chart, round.runs.ccw, round.clusters.ccw, "ccw", "1");
   return chart;
@@ -84,7 +89,7 @@ double reach_of(const SquareRound& round) {
   for (const auto* runs : {&round.runs.cw, &round.runs.ccw}) {
     for (const Eigen::Vector2d& run : *runs) reach = std::max(reach, run.cwiseAbs().maxCoeff());
   }
-  return 1.1 * kMillimetres * std::max(reach, 1e-6);
+  return 1.1 * geometry::kMillimetres * std::max(reach, 1e-6);
 }
 
 PageTable metrics_table(const SquareRound& last) {
@@ -109,31 +114,31 @@ PageTable metrics_table(const SquareRound& last) {
   return table;
 }
 
-Chart ratio_chart(const SquareRound& last) {
-  Chart chart;
+plot::Chart ratio_chart(const SquareRound& last) {
+  plot::Chart chart;
   chart.id = "ratios";
   chart.title = "Wheels and wheelbase, in percent of nominal";
   chart.caption = "With 95 % intervals; 0 is a robot as nominal.";
   chart.x = {.title = "error [%]", .zero = true};
   chart.y.categories = {"right wheel over left", "wheelbase over nominal"};
-  chart.height = bars_height(2) + 20.0;
-  chart.layers.push_back({LayerKind::upright, "", {{"nominal", {0.0}}}, "faint"});
+  chart.height = plot::bars_height(2) + 20.0;
+  chart.layers.push_back({plot::LayerKind::upright, "", {{"nominal", {0.0}}}, "faint"});
   int number = 0;
   for (const auto& [name, solution] :
        {std::pair("exact", &last.exact), std::pair("papers' formulas", &last.formulas)}) {
-    ChartColumn value{"error [%]"};
-    ChartColumn low{"95 % from"};
-    ChartColumn high{"to"};
+    plot::ChartColumn value{"error [%]"};
+    plot::ChartColumn low{"95 % from"};
+    plot::ChartColumn high{"to"};
     for (const Estimate& estimate : {solution->diameter_ratio, solution->wheelbase_ratio}) {
       const Interval at = confidence_interval(estimate);
       value.numbers.push_back(100.0 * (estimate.value - 1.0));
       low.numbers.push_back(100.0 * (at.low - 1.0));
       high.numbers.push_back(100.0 * (at.high - 1.0));
     }
-    ChartLayer layer{LayerKind::intervals,
-                     name,
-                     {{"", {}, chart.y.categories}, value, low, high},
-                     number == 0 ? "1" : "2"};
+    plot::ChartLayer layer{plot::LayerKind::intervals,
+                           name,
+                           {{"", {}, chart.y.categories}, value, low, high},
+                           number == 0 ? "1" : "2"};
     layer.offset = number == 0 ? -6.0 : 6.0;
     ++number;
     chart.layers.push_back(std::move(layer));
@@ -143,7 +148,7 @@ Chart ratio_chart(const SquareRound& last) {
 
 std::string verdict(const SquareCalibration& found) {
   const SquareClusters& clusters = found.rounds.back().clusters;
-  const double size = kMillimetres * clusters.largest_offset.value;
+  const double size = geometry::kMillimetres * clusters.largest_offset.value;
   if (!found.rounds.back().doubts.empty()) {
     return fmt::format(
         "Doubtful: the square ends {:.0f} mm off, but the runs contradict themselves "
@@ -158,8 +163,9 @@ std::string verdict(const SquareCalibration& found) {
   const std::string before =
       found.rounds.size() == 1
           ? ""
-          : fmt::format(" ({:.0f} mm at first)",
-                        kMillimetres * found.rounds.front().clusters.largest_offset.value);
+          : fmt::format(
+                " ({:.0f} mm at first)",
+                geometry::kMillimetres * found.rounds.front().clusters.largest_offset.value);
   return fmt::format(
       "The square ends {:.0f} mm off{}; use a wheelbase of {} m, the left wheel's travel times "
       "{:.5f} "
@@ -182,8 +188,9 @@ Page square_page(const SquareCalibration& found, const std::string& subject) {
       {with_error(found.wheelbase, "m"), "wheelbase to use from now on"},
       {with_error(found.left_factor, ""), "left wheel's travel times"},
       {with_error(found.right_factor, ""), "right wheel's travel times"},
-      {fmt::format("{:.2f}\u00b0", kDegrees * last.exact.alpha.value), "missing per quarter turn"},
-      {fmt::format("{:.0f} mm", kMillimetres * last.clusters.largest_offset.value),
+      {fmt::format("{:.2f}\u00b0", geometry::kDegrees * last.exact.alpha.value),
+       "missing per quarter turn"},
+      {fmt::format("{:.0f} mm", geometry::kMillimetres * last.clusters.largest_offset.value),
        found.rounds.size() > 1 ? "systematic error, last round" : "systematic error", page.tone}};
   page.notes = found.doubts;
   const double reach = reach_of(found.rounds.front());

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 std::string verdict(const SquareRound& round, std::size_t number) {

@@ -83,7 +83,7 @@ std::string use_text(const std::vector<TapedConstant>& constants, bool doubtful,
   if (constants.empty()) return "";
   TextTable table{{Align::left, Align::right, Align::left, Align::left}, {}, false, 4};
   for (const TapedConstant& one : constants) {
-    const std::vector<std::string> cells = quantity_cells(one.now);
+    const std::vector<std::string> cells = report::quantity_cells(one.now);
     table.rows.push_back({label_of(one), cells[0], cells[1], one.unit});
   }
   return fmt::format("\n  {}:\n{}",
@@ -98,7 +98,7 @@ std::string found_text(const TapeCalibration& found, TextStyle style) {
                        const char* unit, int runs, const char* what) {
     if (!one) return;
     const std::vector<std::string> cells =
-        quantity_cells({size * one->value, size * one->standard_error, one->dof});
+        report::quantity_cells({size * one->value, size * one->standard_error, one->dof});
     table.rows.push_back(
         {name, cells[0], cells[1], unit, fmt::format("{} {}{}", runs, what, runs == 1 ? "" : "s")});
   };
@@ -109,9 +109,9 @@ std::string found_text(const TapeCalibration& found, TextStyle style) {
   row("     true / measured turning", found.turn_factor, 1.0, "", found.turns, "turn");
   row("gyro scale", found.gyro_scale, 100.0, "%", found.turns, "turn");
   if (found.rests > 0) {
-    row("gyro bias", found.gyro_bias, kDegrees * 60.0, "deg/min", found.rests, "rest");
+    row("gyro bias", found.gyro_bias, geometry::kDegrees * 60.0, "deg/min", found.rests, "rest");
   } else {
-    row("gyro bias", found.gyro_bias, kDegrees * 60.0, "deg/min", found.turns, "turn");
+    row("gyro bias", found.gyro_bias, geometry::kDegrees * 60.0, "deg/min", found.turns, "turn");
   }
   return table.rows.size() > 1 ? "\n" + table_text(table, style) : "";
 }

@@ -16,10 +16,10 @@ std::string in_words(const Tolerance& tolerance) {
 }
 
 Page with_tolerance(const Page& page, const Tolerance& tolerance) {
-  PageContent content = page.content();
-  content.answers.insert(content.answers.begin(),
-                         {"Is it within the tolerance?", capitalised(in_words(tolerance)) + "."});
-  if (!tolerance.passed()) content.tone = Tone::bad;
+  report::PageContent content = page.content();
+  content.answers.insert(content.answers.begin(), {"Is it within the tolerance?",
+                                                   report::capitalised(in_words(tolerance)) + "."});
+  if (!tolerance.passed()) content.tone = report::Tone::bad;
   return content;
 }
 

@@ -15,6 +15,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 constexpr std::size_t kMostTours = 250;  // drawn
@@ -67,8 +69,8 @@ std::vector<std::size_t> drawn_tours(std::size_t count) {
   return tours;
 }
 
-Chart error_chart(const TourResult& result, const Quantity& quantity) {
-  Chart chart;
+plot::Chart error_chart(const TourResult& result, const Quantity& quantity) {
+  plot::Chart chart;
   chart.id = quantity.id;
   chart.title = quantity.title;
   chart.caption =
@@ -78,31 +80,31 @@ Chart error_chart(const TourResult& result, const Quantity& quantity) {
   chart.y = {.title = quantity.axis, .log = true};
   chart.height = 380.0;
   const std::vector<std::size_t> tours = drawn_tours(result.tours.size());
-  std::vector<ChartLayer> lines;
-  std::vector<ChartLayer> points;
+  std::vector<plot::ChartLayer> lines;
+  std::vector<plot::ChartLayer> points;
   for (const std::string& method : tour_methods()) {
     if (!quantity.pick(result.tours.front().at(method))) continue;
     const auto [words, colour] = look_of(method);
-    ChartColumn tour{"tour"};
-    ChartColumn mean{quantity.axis};
-    ChartColumn low{"95 % from"};
-    ChartColumn high{"to"};
+    plot::ChartColumn tour{"tour"};
+    plot::ChartColumn mean{quantity.axis};
+    plot::ChartColumn low{"95 % from"};
+    plot::ChartColumn high{"to"};
     for (const std::size_t k : tours) {
       const SeedMean error = *quantity.pick(result.tours[k].at(method));
       const double value = quantity.factor * error.mean;
-      const double reach = quantity.factor * kNormal95 * error.standard_error;
+      const double reach = quantity.factor * plot::kNormal95 * error.standard_error;
       tour.numbers.push_back(static_cast<double>(k + 1));
       mean.numbers.push_back(value);
       low.numbers.push_back(std::max(value - reach, 0.1 * value));
       high.numbers.push_back(value + reach);
     }
-    chart.layers.push_back({LayerKind::band, "", {tour, low, high}, colour});
-    lines.push_back({LayerKind::line, words, {tour, mean}, colour});
-    points.push_back({LayerKind::dots, words, {tour, mean, low, high}, colour});
+    chart.layers.push_back({plot::LayerKind::band, "", {tour, low, high}, colour});
+    lines.push_back({plot::LayerKind::line, words, {tour, mean}, colour});
+    points.push_back({plot::LayerKind::dots, words, {tour, mean, low, high}, colour});
     points.back().size = tours.size() > 60 ? 2.0 : 3.0;
   }
-  for (std::vector<ChartLayer>* more : {&lines, &points}) {
-    for (ChartLayer& layer : *more) chart.layers.push_back(std::move(layer));
+  for (std::vector<plot::ChartLayer>* more : {&lines, &points}) {
+    for (plot::ChartLayer& layer : *more) chart.layers.push_back(std::move(layer));
   }
   return chart;
 }
@@ -125,8 +127,8 @@ PageTable last_table(const TourResult& result) {
   return table;
 }
 
-Chart first_sight_chart(const TourResult& result) {
-  Chart chart;
+plot::Chart first_sight_chart(const TourResult& result) {
+  plot::Chart chart;
   chart.id = "first-sight";
   chart.title = "First sight, tour 1";
   chart.caption =
@@ -135,20 +137,20 @@ Chart first_sight_chart(const TourResult& result) {
   chart.x = {.title = "error [%; orientation: hundredths of a radian]", .zero = true};
   chart.y.categories = {"stretch, before", "stretch, after", "orientation, before",
                         "orientation, after"};
-  chart.height = bars_height(4);
-  ChartColumn value{"error"};
-  ChartColumn low{"95 % from"};
-  ChartColumn high{"to"};
+  chart.height = plot::bars_height(4);
+  plot::ChartColumn value{"error"};
+  plot::ChartColumn low{"95 % from"};
+  plot::ChartColumn high{"to"};
   const TourMetrics& before = result.first_sight_before;
   const TourMetrics& after = result.first_sight_after;
   for (const SeedMean& mean : {before.stretch_error, after.stretch_error, before.orientation_error,
                                after.orientation_error}) {
     value.numbers.push_back(100.0 * mean.mean);
-    low.numbers.push_back(100.0 * (mean.mean - kNormal95 * mean.standard_error));
-    high.numbers.push_back(100.0 * (mean.mean + kNormal95 * mean.standard_error));
+    low.numbers.push_back(100.0 * (mean.mean - plot::kNormal95 * mean.standard_error));
+    high.numbers.push_back(100.0 * (mean.mean + plot::kNormal95 * mean.standard_error));
   }
   chart.layers.push_back(
-      {LayerKind::intervals, "", {{"", {}, chart.y.categories}, value, low, high}, "1"});
+      {plot::LayerKind::intervals, "", {{"", {}, chart.y.categories}, value, low, high}, "1"});
   return chart;
 }
 
@@ -166,7 +168,7 @@ Page tour_page(const TourResult& result, int seeds, const std::string& subject) 
       "After {} {} routes of the elastic map are {:.2f} % too long or short and {:.2f}\u00b0 "
       "askew, {:.1f} times better than single measurements ({:.2f} %).",
       result.tours.size(), result.tours.size() == 1 ? "tour" : "tours",
-      100.0 * elastic.stretch_error.mean, kDegrees * elastic.orientation_error.mean,
+      100.0 * elastic.stretch_error.mean, geometry::kDegrees * elastic.orientation_error.mean,
       raw.stretch_error.mean / std::max(elastic.stretch_error.mean, 1e-12),
       100.0 * raw.stretch_error.mean);
   page.facts = {
@@ -182,7 +184,8 @@ Page tour_page(const TourResult& result, int seeds, const std::string& subject) 
   }
   const Quantity quantities[] = {
       {"stretch", "Routes too long or too short", "mean stretch error [%]", 100.0, stretch},
-      {"orientation", "Routes askew", "mean orientation error [\u00b0]", kDegrees, orientation},
+      {"orientation", "Routes askew", "mean orientation error [\u00b0]", geometry::kDegrees,
+       orientation},
       {"position", "Landmarks off", "mean position error [m]", 1.0, position}};
   PageSection section{"Errors, tour by tour", {}};
   for (const Quantity& one : quantities) {
@@ -199,11 +202,11 @@ Page tour_page(const TourResult& result, int seeds, const std::string& subject) 
 }
 
 std::string tour_picture(const TourMap& shown) {
-  MapPicture picture;
+  plot::MapPicture picture;
   picture.title = fmt::format(
       "{}, after {} {}: routes {:.1f} % too long or short, {:.2f}\u00b0 askew",
       capitalised(look_of(shown.method).words), shown.tour, shown.tour == 1 ? "tour" : "tours",
-      100.0 * shown.errors.stretch, kDegrees * shown.errors.orientation);
+      100.0 * shown.errors.stretch, geometry::kDegrees * shown.errors.orientation);
   picture.map = shown.map;
   picture.truth = shown.truth;
   picture.true_routes = true;
@@ -211,7 +214,7 @@ std::string tour_picture(const TourMap& shown) {
   if (picture.crosses) picture.measured = shown.measured;
   if (shown.laid == Laid::aligned) picture.map_onto_truth = onto_truth(shown.map, shown.truth);
   picture.names = false;
-  return draw_map(picture);
+  return plot::draw_map(picture);
 }
 
 }  // namespace trussmap

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 struct Row {
@@ -15,27 +17,28 @@ struct Row {
   const std::optional<Calibrated>& found;
 };
 
-Chart interval_chart(const char* id, const char* title, const char* caption, const char* axis,
-                     const std::vector<Row>& rows, double nominal, double factor) {
-  Chart chart;
+plot::Chart interval_chart(const char* id, const char* title, const char* caption, const char* axis,
+                           const std::vector<Row>& rows, double nominal, double factor) {
+  plot::Chart chart;
   chart.id = id;
   chart.title = title;
   chart.caption = caption;
   chart.x = {.title = axis, .zero = true};
-  ChartLayer layer{LayerKind::intervals, "", {{""}, {axis}, {"95 % from"}, {"to"}}, "1"};
+  plot::ChartLayer layer{
+      plot::LayerKind::intervals, "", {{""}, {axis}, {"95 % from"}, {"to"}}, "1"};
   for (const Row& row : rows) {
     if (!row.found) continue;
     const double value = factor * (row.found->value - nominal);
-    const double reach = factor * kNormal95 * row.found->sd;
+    const double reach = factor * plot::kNormal95 * row.found->sd;
     chart.y.categories.emplace_back(row.name);
     layer.columns[0].texts.emplace_back(row.name);
     layer.columns[1].numbers.push_back(value);
     layer.columns[2].numbers.push_back(value - reach);
     layer.columns[3].numbers.push_back(value + reach);
   }
-  chart.height = bars_height(chart.y.categories.size());
+  chart.height = plot::bars_height(chart.y.categories.size());
   if (nominal != 0.0) {
-    chart.layers.push_back({LayerKind::upright, "", {{"nominal", {0.0}}}, "faint"});
+    chart.layers.push_back({plot::LayerKind::upright, "", {{"nominal", {0.0}}}, "faint"});
   }
   if (!chart.y.categories.empty()) chart.layers.push_back(std::move(layer));
   return chart;
@@ -48,18 +51,18 @@ std::vector<double> in_millimetres(const std::vector<double>& metres) {
   return result;
 }
 
-Chart arrival_chart(const TruthCalibration& found) {
-  Chart chart;
+plot::Chart arrival_chart(const TruthCalibration& found) {
+  plot::Chart chart;
   chart.id = "held-out";
   chart.title = "How far off held-out legs end";
   chart.caption =
       "Share of the legs, none of them used for the calibration that is judged, that end within a "
       "distance of the truth. Further to the left is better.";
   chart.x = {.title = "distance [mm]", .zero = true};
-  chart.y = {.title = "legs within it [%]", .range = Range{0.0, 100.0}};
+  chart.y = {.title = "legs within it [%]", .range = plot::Range{0.0, 100.0}};
   chart.height = 300.0;
-  add_shares(chart, "nominal", in_millimetres(found.nominal.distances), "mm", "2");
-  add_shares(chart, "calibrated", in_millimetres(found.calibrated.distances), "mm", "1");
+  plot::add_shares(chart, "nominal", in_millimetres(found.nominal.distances), "mm", "2");
+  plot::add_shares(chart, "calibrated", in_millimetres(found.calibrated.distances), "mm", "1");
   return chart;
 }
 

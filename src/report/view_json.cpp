@@ -7,7 +7,7 @@
 #include "trussmap/wording.hpp"
 #include "wording/explanations.hpp"
 
-namespace trussmap {
+namespace trussmap::report {
 
 using nlohmann::ordered_json;
 
@@ -16,18 +16,18 @@ ordered_json effect_view(const Effect& effect) {
                          {"name", name_in_words(effect)},
                          {"formula", formula_of(effect)},
                          {"part", name_of(part_of(effect))},
-                         {"channel", name_of(effect.channel)},
+                         {"channel", trussmap::name_of(effect.channel)},
                          {"does", facts_of(effect.channel).does_what},
                          {"shape", texts_of(effect.shape)}};
-  if (const CatalogueEntry* entry = usual_entry(effect)) {
+  if (const CatalogueEntry* entry = wording::usual_entry(effect)) {
     result["cause"] = entry->cause;
     result["remedy"] = entry->remedy;
   }
   return result;
 }
 
-ordered_json chart_view(const Chart& chart) {
-  return ordered_json::parse(chart_json(chart));
+ordered_json chart_view(const plot::Chart& chart) {
+  return ordered_json::parse(plot::chart_json(chart));
 }
 
 ordered_json millimetres(const std::optional<HeldOutMetrics>& metrics) {
@@ -38,4 +38,4 @@ std::string safe_text(const ordered_json& json) {
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::report

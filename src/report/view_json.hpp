@@ -13,14 +13,14 @@
 
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// Name, formula, channel and shapes; what causes it and what helps, where the catalogue knows.
 [[nodiscard]] nlohmann::ordered_json effect_view(const Effect& effect);
-[[nodiscard]] nlohmann::ordered_json chart_view(const Chart& chart);
+[[nodiscard]] nlohmann::ordered_json chart_view(const plot::Chart& chart);
 /// Root mean square of the held-out legs; null where there are none.
 [[nodiscard]] nlohmann::ordered_json millimetres(const std::optional<HeldOutMetrics>& metrics);
 /// Bytes that are no UTF-8 replaced.
 [[nodiscard]] std::string safe_text(const nlohmann::ordered_json& json);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

@@ -15,7 +15,8 @@ std::string constants_text(const NoiseAnalysis& result, TextStyle style) {
   TextTable table{{Align::left, Align::right, Align::left, Align::left, Align::left}, {}, false, 2};
   const double length = path_length(result.experiment.path);
   const auto row = [&](const char* name, const WheelConstant& wheel) {
-    const auto cells = quantity_cells({1000.0 * wheel.k, 1000.0 * wheel.standard_error, 0.0});
+    const auto cells =
+        report::quantity_cells({1000.0 * wheel.k, 1000.0 * wheel.standard_error, 0.0});
     const std::string meaning =
         wheel.k > 0.0
             ? fmt::format("{:.2f} mm after 1 m, {:.2f} mm after {:g} m", 1000.0 * wheel.k,
@@ -69,8 +70,8 @@ std::string stated_text(const StatedNoise& stated, TextStyle style) {
   TextTable table;
   table.columns = {Align::left, Align::right, Align::right, Align::right};
   table.has_heading = true;
-  table.rows = sigma_rows(stated);
-  table.rows.insert(table.rows.begin(), sigma_heading());
+  table.rows = report::sigma_rows(stated);
+  table.rows.insert(table.rows.begin(), report::sigma_heading());
   return fmt::format(
              "\n  By the k stated, left {:.3g} and right {:.3g} x 10^-3 m^1/2: {} (p {}).\n",
              1000.0 * stated.left, 1000.0 * stated.right,

@@ -22,6 +22,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 using nlohmann::ordered_json;
@@ -68,14 +70,14 @@ ordered_json step_json(const WorkbenchLog& log, std::size_t k,
 }
 
 /// The ladder of the steps, with what was predicted, and the floor that noise alone makes.
-Chart staircase(const WorkbenchLog& log, const std::vector<std::size_t>& way) {
-  std::vector<LadderStep> ladder;
+plot::Chart staircase(const WorkbenchLog& log, const std::vector<std::size_t>& way) {
+  std::vector<plot::LadderStep> ladder;
   for (const std::size_t k : way) {
     const WorkbenchStep& step = log.steps[k];
     ladder.push_back({step.label.empty() ? step_name(step) : step.label, step.arrival_rms,
                       step.chi2, step.dof, step.predicted_rms});
   }
-  return ladder_chart("staircase", ladder, log.steps[way.back()].expected_rms);
+  return plot::ladder_chart("staircase", ladder, log.steps[way.back()].expected_rms);
 }
 
 ordered_json card_json(const TriedModel& now, std::size_t k) {
@@ -192,7 +194,7 @@ ordered_json unseen_json(const Diagnosis& diagnosis) {
 
 /// What a shape may speak of in all of these.
 std::vector<std::string> shape_variables(const std::vector<DrivenRecording>& recordings) {
-  std::vector<std::string> names = reserved_variables();
+  std::vector<std::string> names = recording::reserved_variables();
   for (const Covariate& one : recordings.front().drive.covariates) {
     const auto has = [&one](const DrivenRecording& recording) {
       const auto& all = recording.drive.covariates;
@@ -208,7 +210,7 @@ std::vector<std::string> shape_variables(const std::vector<DrivenRecording>& rec
 ordered_json variables_json(const std::vector<DrivenRecording>& recordings) {
   ordered_json list = ordered_json::array();
   for (const std::string& name : shape_variables(recordings)) {
-    list.push_back({{"name", name}, {"unit", unit_of_variable(name)}});
+    list.push_back({{"name", name}, {"unit", recording::unit_of_variable(name)}});
   }
   return list;
 }
@@ -255,7 +257,7 @@ std::string headline(const TriedModel& now) {
     return fmt::format(
         "unexplained misfit: the {} error {}, and none of {} effects tried explains it", first.kind,
         first.against == "all" ? std::string("is everywhere alike")
-                               : "goes with " + variable_in_words(first.against),
+                               : "goes with " + wording::variable_in_words(first.against),
         diagnosis.tried);
   }
   return typeset(verdict_in_words(diagnosis));

@@ -125,7 +125,8 @@ std::string workbench_page(const PageRuntime& runtime) {
       "'none'\">\n"
       "<title>trussmap workbench</title>\n<style>{}</style>\n</head>\n<body>\n{}"
       "<script>{}</script>\n</body>\n</html>\n",
-      content_hash(runtime.script), content_hash(style), style, kBody, runtime.script);
+      report::content_hash(runtime.script), report::content_hash(style), style, kBody,
+      runtime.script);
 }
 
 }  // namespace trussmap

@@ -20,6 +20,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace report;
+
 namespace {
 
 using nlohmann::ordered_json;
@@ -49,7 +51,7 @@ ordered_json figure_json(const HeldOut& held_out, const IsShown& is_shown) {
                          {"floor", distance_text(floor)},
                          {"floor_mm", 1e3 * floor},
                          {"legs", off.size()},
-                         {"median", distance_text(median(std::move(off)))},
+                         {"median", distance_text(statistics::median(std::move(off)))},
                          {"worst", distance_text(worst->arrival_error.norm())}};
   if (!worst->from.empty()) {
     result["worst_leg"] =
@@ -59,12 +61,13 @@ ordered_json figure_json(const HeldOut& held_out, const IsShown& is_shown) {
 }
 
 /// Straight lines from where legs begin to where they end.
-ChartLayer leg_layer(const std::vector<TriedLeg>& legs, const std::string& name,
-                     const std::string& colour, const std::function<bool(const TriedLeg&)>& which) {
-  ChartLayer layer{LayerKind::segments,
-                   name,
-                   {{""}, {""}, {""}, {""}, {"from"}, {"to"}, {"from [s]"}, {"to [s]"}},
-                   colour};
+plot::ChartLayer leg_layer(const std::vector<TriedLeg>& legs, const std::string& name,
+                           const std::string& colour,
+                           const std::function<bool(const TriedLeg&)>& which) {
+  plot::ChartLayer layer{plot::LayerKind::segments,
+                         name,
+                         {{""}, {""}, {""}, {""}, {"from"}, {"to"}, {"from [s]"}, {"to [s]"}},
+                         colour};
   for (const TriedLeg& leg : legs) {
     if (!which(leg)) continue;
     const double numbers[] = {leg.begin.x(), leg.begin.y(), leg.end.x(), leg.end.y()};
@@ -80,7 +83,8 @@ ChartLayer leg_layer(const std::vector<TriedLeg>& legs, const std::string& name,
 
 /// Routes by what is left: by the legs held out, on one scale for all steps; where none is, by the
 /// wheels alone, of which `worst`, m, is the worst of all.
-Chart routes_of(const TriedModel& now, const IsShown& is_shown, double first_rms, double worst) {
+plot::Chart routes_of(const TriedModel& now, const IsShown& is_shown, double first_rms,
+                      double worst) {
   const auto shown = [&is_shown](const auto& legs) {
     auto some = legs;
     std::erase_if(some, [&is_shown](const auto& leg) { return !is_shown(leg.leg); });
@@ -88,18 +92,21 @@ Chart routes_of(const TriedModel& now, const IsShown& is_shown, double first_rms
   };
   const std::vector<LegMisfit>& misfits = now.comparison().worst;
   const bool held_out = first_rms > 0.0 && !now.diagnosis().held_out.legs.empty();
-  const std::vector<RouteError> routes =
-      held_out ? held_out_errors(shown(now.diagnosis().held_out.legs), shown(misfits), now.map())
-               : route_errors(shown(misfits), now.map());
-  return route_chart("map", "The map, routes by what is left", now.map(), routes,
-                     held_out ? by_held_out_legs(first_rms) : by_wheels_alone(worst));
+  const std::vector<plot::RouteError> routes =
+      held_out
+          ? plot::held_out_errors(shown(now.diagnosis().held_out.legs), shown(misfits), now.map())
+          : plot::route_errors(shown(misfits), now.map());
+  return plot::route_chart(
+      "map", "The map, routes by what is left", now.map(), routes,
+      held_out ? plot::by_held_out_legs(first_rms) : plot::by_wheels_alone(worst));
 }
 
-Chart map_of(const TriedModel& now, const IsShown& is_shown, bool all, double first_rms) {
-  Chart map;
-  const std::vector<RouteError> routes = route_errors(now.comparison().worst, now.map());
+plot::Chart map_of(const TriedModel& now, const IsShown& is_shown, bool all, double first_rms) {
+  plot::Chart map;
+  const std::vector<plot::RouteError> routes =
+      plot::route_errors(now.comparison().worst, now.map());
   if (routes.empty()) {
-    map = truss_chart("map", "The map", now.map(), {}, 1.0);
+    map = plot::truss_chart("map", "The map", now.map(), {}, 1.0);
     if (!all) {
       map.layers.push_back(leg_layer(now.legs(), "chosen", "2", [&is_shown](const TriedLeg& leg) {
         return is_shown(leg.number);
@@ -111,7 +118,7 @@ Chart map_of(const TriedModel& now, const IsShown& is_shown, bool all, double fi
   std::vector<Effect> acting;
   for (const EffectEstimate& one : now.fit().effects) acting.push_back(one.effect);
   for (const Finding* one : found_by(now.diagnosis())) acting.push_back(one->effect);
-  add_places(map, acting);
+  plot::add_places(map, acting);
   const auto is_excluded = [](const TriedLeg& leg) { return leg.excluded; };
   if (std::ranges::any_of(now.legs(), is_excluded)) {
     map.layers.push_back(leg_layer(now.legs(), "excluded", "muted", is_excluded));
@@ -122,8 +129,8 @@ Chart map_of(const TriedModel& now, const IsShown& is_shown, bool all, double fi
 }
 
 ordered_json strips_json(const TriedModel& now, const IsShown& is_shown, bool all) {
-  const std::vector<double> shifts = elapsed_shifts(now.recordings());
-  MarkedTimes marked;
+  const std::vector<double> shifts = drive::elapsed_shifts(now.recordings());
+  plot::MarkedTimes marked;
   for (const TriedLeg& leg : now.legs()) {
     const double shift = shifts[leg.recording];
     const TimeSpan span{leg.time.from + shift, leg.time.to + shift};
@@ -131,7 +138,7 @@ ordered_json strips_json(const TriedModel& now, const IsShown& is_shown, bool al
     if (!all && is_shown(leg.number)) marked.chosen.push_back(span);
   }
   ordered_json strips = ordered_json::array();
-  for (const Chart& strip : time_strips(now.recordings(), marked)) {
+  for (const plot::Chart& strip : plot::time_strips(now.recordings(), marked)) {
     strips.push_back(chart_view(strip));
   }
   return strips;
@@ -167,6 +174,10 @@ ordered_json legs_json(const std::vector<TriedLeg>& legs, const IsShown& is_show
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::report {
+
 ordered_json views_json(const TriedModel& now,
                         const std::optional<std::vector<std::size_t>>& chosen, double first_rms) {
   const IsShown is_shown = [&chosen](std::size_t leg) {
@@ -178,6 +189,10 @@ ordered_json views_json(const TriedModel& now,
           {"map", chart_view(map_of(now, is_shown, all, first_rms))},
           {"strips", strips_json(now, is_shown, all)}};
 }
+
+}  // namespace trussmap::report
+
+namespace trussmap {
 
 std::string selection_json(const TriedModel& now, const WorkbenchLog& log,
                            const std::vector<std::size_t>& legs) {

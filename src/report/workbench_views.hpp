@@ -13,11 +13,11 @@
 
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::report {
 
 /// Of legs by their numbers, ascending; of all without any given. `first_rms`: how far off held-out
 /// legs end at the first step, m, which scales the map's colours.
 [[nodiscard]] nlohmann::ordered_json views_json(
     const TriedModel& now, const std::optional<std::vector<std::size_t>>& chosen, double first_rms);
 
-}  // namespace trussmap
+}  // namespace trussmap::report

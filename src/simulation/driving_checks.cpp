@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::simulation {
 namespace {
 
 void require(bool holds, const std::string& what) {
@@ -60,10 +60,11 @@ void check_orders(const DrivingStyle& style, std::size_t legs) {
   for (const LegOrder& one : style.orders) {
     require(is_range(one.speed, one.speed), "a leg's speed must be above 0 m/s");
     require(is_range(one.turn_rate, one.turn_rate), "a turn's rate must be above 0 rad/s");
-    require(one.rest >= 0.0 && one.rest <= kLongestStop, "a rest must lie between 0 and 1e5 s");
-    require(std::abs(one.turn) <= kMostTurn,
-            fmt::format("a turn must be {} rad at most", kMostTurn));
-    require(std::abs(one.bend) <= kSharpestBend, "a leg must bend by a radian at most");
+    require(one.rest >= 0.0 && one.rest <= recording::kLongestStop,
+            "a rest must lie between 0 and 1e5 s");
+    require(std::abs(one.turn) <= recording::kMostTurn,
+            fmt::format("a turn must be {} rad at most", recording::kMostTurn));
+    require(std::abs(one.bend) <= recording::kSharpestBend, "a leg must bend by a radian at most");
     require(one.further.size() == style.covariates.size(),
             "a leg needs a value of each further column");
   }
@@ -119,4 +120,4 @@ void check_walk(const Mesh& mesh, const std::vector<int>& walk, double standing,
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

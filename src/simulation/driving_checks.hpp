@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 void check_style(const DrivingStyle& style);
 
@@ -24,4 +24,4 @@ void check_wheels(const Robot& robot);
 void check_walk(const Mesh& mesh, const std::vector<int>& walk, double standing,
                 double turning_radius);
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

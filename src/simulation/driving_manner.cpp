@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::simulation {
 namespace {
 
 constexpr double kMostSteering = 0.6;  // rad, ackermann
@@ -27,7 +27,7 @@ constexpr double kAside = 1.2;         // rad
 
 DrivingManner manner_of(const Robot& robot) {
   DrivingManner manner;
-  if (is_of_drive(Channel::steer, robot)) {
+  if (effects::is_of_drive(Channel::steer, robot)) {
     manner.backwards = kBackwards;
     manner.bends_by_way = true;
   }
@@ -42,7 +42,7 @@ DrivingManner manner_of(const Robot& robot) {
                   1.5 * std::abs(robot.steer_left)});
     manner.longest_arc = kLongestArc;
   }
-  if (is_of_drive(Channel::sideways, robot)) manner.aside = kAside;
+  if (effects::is_of_drive(Channel::sideways, robot)) manner.aside = kAside;
   return manner;
 }
 
@@ -94,4 +94,4 @@ std::vector<ArcRow> turning_arcs(double turn, double radius, const std::vector<i
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -22,7 +22,7 @@
 #include <span>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 struct DrivingManner {
   double turning_radius = 0.0;  ///< m, R, of the rear axle's middle; 0: turns on the spot
@@ -57,4 +57,4 @@ struct ArcRow {
 [[nodiscard]] std::vector<ArcRow> turning_arcs(double turn, double radius,
                                                const std::vector<int>& rows);
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

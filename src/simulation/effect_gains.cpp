@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::simulation {
 namespace {
 
 constexpr int kMostPasses = 60;
@@ -98,7 +98,7 @@ MotionUnderEffects lay_path_under(const Mesh& mesh, const std::vector<int>& walk
                                   const DrivingStyle& style, const Robot& robot,
                                   const std::vector<Effect>& effects, Rates rates,
                                   std::uint64_t seed) {
-  for (const Effect& effect : effects) require_of_drive(effect, robot);
+  for (const Effect& effect : effects) effects::require_of_drive(effect, robot);
   const DrivingManner manner = manner_of(robot);
   MotionUnderEffects result;
   result.motion = lay_path(mesh, walk, style, seed, {}, manner);
@@ -133,4 +133,4 @@ MotionUnderEffects lay_path_under(const Mesh& mesh, const std::vector<int>& walk
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -26,7 +26,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 /// Sums of coefficient x shape, on the middles of the rows or, for compass, range and bearing, at
 /// their ends. Effects without coefficients count as 0. Throws std::invalid_argument, naming the
@@ -49,4 +49,4 @@ struct MotionUnderEffects {
                                                 const std::vector<Effect>& effects, Rates rates,
                                                 std::uint64_t seed);
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -13,10 +13,10 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 void check_covariates(const std::vector<std::string>& names) {
-  std::vector<std::string> taken = reserved_variables();
+  std::vector<std::string> taken = recording::reserved_variables();
   for (const char* name : {"left", "right", "payload_kg", "lights", "temperature_C"}) {
     taken.emplace_back(name);
   }
@@ -73,4 +73,4 @@ std::vector<Covariate> ordered_columns(const TrueMotion& motion, const DrivingSt
   return columns;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

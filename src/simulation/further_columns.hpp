@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 /// Throws std::invalid_argument: a letter, then letters, digits, _ is expected, and no variable or
 /// column that is there already.
@@ -25,4 +25,4 @@ void check_covariates(const std::vector<std::string>& names);
 [[nodiscard]] std::vector<Covariate> ordered_columns(const TrueMotion& motion,
                                                      const DrivingStyle& style);
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -23,6 +23,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace simulation;
+
 namespace {
 
 constexpr double kSecondShare = 0.4;  // chance of a second effect
@@ -46,11 +48,11 @@ class Draw {
         surveyed_(surveyed),
         variables_(motion_variables(motion, true_rates(motion), robot.geometry.wheelbase)),
         random_(random_stream(seed, Stream::hidden)) {
-    for (const CatalogueRecord& record : catalogue_records()) {
+    for (const effects::CatalogueRecord& record : effects::catalogue_records()) {
       // Robots without markers draw from the same list as before there were any.
       const bool of_yaws = record.entry.channel == Channel::sighting_yaw;
       if (of_yaws && !(robot.markers && surveyed)) continue;
-      if (is_of_drive(record.entry.channel, robot.geometry)) records_.push_back(&record);
+      if (effects::is_of_drive(record.entry.channel, robot.geometry)) records_.push_back(&record);
     }
   }
 
@@ -76,7 +78,7 @@ class Draw {
     return list[std::min(at, list.size() - 1)];
   }
 
-  [[nodiscard]] bool can_be_shown(const CatalogueRecord& record) const {
+  [[nodiscard]] bool can_be_shown(const effects::CatalogueRecord& record) const {
     const Channel channel = record.entry.channel;
     const bool of_ranges = channel == Channel::range || channel == Channel::range_scale;
     const bool of_bearings = channel == Channel::bearing;
@@ -99,7 +101,7 @@ class Draw {
   }
 
   /// The entry's effect, what is open in it drawn.
-  Effect closed(const CatalogueRecord& record) {
+  Effect closed(const effects::CatalogueRecord& record) {
     const CatalogueEntry& entry = record.entry;
     if (entry.of_covariate()) {
       const std::vector<std::string_view>& columns = record.hidden.columns;
@@ -119,7 +121,7 @@ class Draw {
     return catalogue_effect(entry, parameters);
   }
 
-  std::optional<Effect> draw(const CatalogueRecord& record) {
+  std::optional<Effect> draw(const effects::CatalogueRecord& record) {
     if (!can_be_shown(record)) return std::nullopt;
     const CatalogueEntry& entry = record.entry;
     Effect effect = closed(record);
@@ -153,16 +155,24 @@ class Draw {
   bool surveyed_;
   MotionVariables variables_;
   std::mt19937_64 random_;
-  std::vector<const CatalogueRecord*> records_;  ///< of the robot's drive
+  std::vector<const effects::CatalogueRecord*> records_;  ///< of the robot's drive
 };
 
 }  // namespace
+
+}  // namespace trussmap
+
+namespace trussmap::simulation {
 
 std::vector<Effect> draw_hidden_effects(const TrueMotion& motion, const Mesh& mesh,
                                         const WheeledRobot& robot, bool surveyed,
                                         std::uint64_t seed) {
   return Draw(motion, mesh, robot, surveyed, seed).effects();
 }
+
+}  // namespace trussmap::simulation
+
+namespace trussmap {
 
 std::vector<Effect> draw_hidden_effects(const Mesh& mesh, const std::vector<int>& walk,
                                         const DrivingStyle& style, const WheeledRobot& robot,

@@ -17,11 +17,11 @@
 #include <cstdint>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 /// draw_hidden_effects for a path that is laid already, without effects.
 [[nodiscard]] std::vector<Effect> draw_hidden_effects(const TrueMotion& motion, const Mesh& mesh,
                                                       const WheeledRobot& robot, bool surveyed,
                                                       std::uint64_t seed);
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

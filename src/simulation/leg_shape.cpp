@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 Vector2 unit_step(double first, double last) {
   constexpr std::array<double, 5> kNodes = {-0.9061798459386640, -0.5384693101056831, 0.0,
@@ -59,4 +59,4 @@ double sharpest_bend(const std::array<double, 3>& bends) {
          (2.0 * std::abs(bends[0]) + std::abs(bends[1]) + 2.0 * std::abs(bends[2]));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -9,7 +9,7 @@
 #include <array>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 /// Where a row of unit length leads whose heading changes evenly from `first` to `last`: five-point
 /// Gauss-Legendre quadrature, exact to rounding for turns below a radian.
@@ -34,4 +34,4 @@ enum class Bends { in_time, by_way };
 /// The sharpest bend of such a leg if it is 1 m long, at most [rad/m].
 [[nodiscard]] double sharpest_bend(const std::array<double, 3>& bends);
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -103,9 +103,17 @@ Mesh regular_polygon(int corners, double side) {
   return mesh;
 }
 
+}  // namespace trussmap
+
+namespace trussmap::simulation {
+
 bool is_polygon(const Mesh& mesh) {
   return mesh.size.rows == 1 && mesh.routes.size() == mesh.positions.size();
 }
+
+}  // namespace trussmap::simulation
+
+namespace trussmap {
 
 std::vector<double> random_lines(int count, double shortest, double longest,
                                  std::mt19937_64& random) {
@@ -137,6 +145,10 @@ std::string landmark_name(const Mesh& mesh, int landmark) {
   return fmt::format("L{}_{}", mesh.column(landmark), mesh.row(landmark));
 }
 
+}  // namespace trussmap
+
+namespace trussmap::simulation {
+
 std::vector<int> neighbours(const Mesh& mesh, int landmark) {
   const int i = mesh.column(landmark);
   const int j = mesh.row(landmark);
@@ -159,6 +171,10 @@ std::vector<int> perimeter(const Mesh& mesh) {
   for (int j = top - 1; j >= 1; --j) round.push_back(mesh.landmark(0, j));
   return round;
 }
+
+}  // namespace trussmap::simulation
+
+namespace trussmap {
 
 double shortest_route(const Mesh& mesh) {
   double shortest = std::numeric_limits<double>::infinity();

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 /// Whether it is a polygon: a row whose ends are joined.
 [[nodiscard]] bool is_polygon(const Mesh& mesh);
@@ -20,4 +20,4 @@ namespace trussmap {
 /// landmarks is its own perimeter, from end to end.
 [[nodiscard]] std::vector<int> perimeter(const Mesh& mesh);
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::simulation {
 namespace {
 
 /// A day of the place, twenty minutes long, to the thermometer's thousandth of a degree.
@@ -117,4 +117,4 @@ void MotionSoFar::move(const Vector2& step) {
   pose_.y = position.y();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 class MotionSoFar {
  public:
@@ -56,4 +56,4 @@ class MotionSoFar {
   TrueMotion motion_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::simulation {
 namespace {
 
 constexpr double kHalfWindow = 0.5;   // s
@@ -174,4 +174,4 @@ MotionVariables motion_variables(const TrueMotion& motion, const std::vector<Row
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

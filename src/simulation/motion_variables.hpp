@@ -21,7 +21,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 struct MotionVariables {
   RowVariables middle;
@@ -44,4 +44,4 @@ struct RowRates {
                                                const std::vector<RowRates>& rates,
                                                double wheelbase);
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

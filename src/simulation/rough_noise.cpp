@@ -64,6 +64,10 @@ std::vector<std::string> rough_names(const RoughNoise& rough) {
   return names;
 }
 
+}  // namespace trussmap
+
+namespace trussmap::simulation {
+
 WhiteErrors::WhiteErrors(std::uint64_t seed, Stream normal, Stream tails, bool heavy)
     : random_(random_stream(seed, normal)),
       random_tails_(random_stream(seed, tails)),
@@ -132,4 +136,4 @@ std::vector<LegMisreading> leg_misreadings(const TrueMotion& motion, const Rough
   return misreadings;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -26,7 +26,7 @@
 #include <random>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 /// White errors of variance 1: normal, or with heavy tails.
 class WhiteErrors {
@@ -96,4 +96,4 @@ struct LegMisreading {
                                                          const RoughNoise& rough,
                                                          std::uint64_t seed);
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 double sd_of_mean_error(double mean_absolute_error) {
   return std::sqrt(std::numbers::pi / 2.0) * mean_absolute_error;
@@ -35,4 +35,4 @@ MeasuredRoute measure_route(const Vector2& displacement, const RouteErrors& erro
   return measured;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -16,7 +16,7 @@
 
 #include <random>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 /// Standard deviation of a normal error by its mean absolute value.
 [[nodiscard]] double sd_of_mean_error(double mean_absolute_error);
@@ -37,4 +37,4 @@ struct MeasuredRoute {
 [[nodiscard]] MeasuredRoute measure_route(const Vector2& displacement, const RouteErrors& errors,
                                           std::mt19937_64& random);
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -215,7 +215,7 @@ SimulatedRecording simulate(const SimulationSettings& settings,
     result.drive = simulate_plan(result.mesh, *settings.plan, style, robot,
                                  settings.seed + kFurtherSession, acting);
     // The place was surveyed once.
-    result.drive.recording.survey = survey(result.mesh, robot, settings.seed);
+    result.drive.recording.survey = simulation::survey(result.mesh, robot, settings.seed);
   } else {
     result.drive = simulate_drive(result.mesh, tours.walk, style, robot, settings.seed, acting);
   }

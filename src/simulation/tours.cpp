@@ -14,6 +14,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace simulation;
+
 namespace {
 
 /// A route as seen from one of its ends.
@@ -117,6 +119,10 @@ WalkKind parse_walk_kind(std::string_view name) {
                               "', expected euler, face, depth-first or random");
 }
 
+}  // namespace trussmap
+
+namespace trussmap::simulation {
+
 std::vector<MeshRoute> doubled_routes(const Mesh& mesh) {
   std::vector<MeshRoute> doubled;
   if (is_polygon(mesh)) return doubled;
@@ -206,6 +212,10 @@ std::vector<int> random_walk(const Mesh& mesh, int start, std::mt19937_64& rando
   }
   return walk;
 }
+
+}  // namespace trussmap::simulation
+
+namespace trussmap {
 
 Tours make_tours(const Mesh& mesh, WalkKind kind, int count, std::mt19937_64& random) {
   if (count < 1) throw std::invalid_argument("a drive takes one tour or more");

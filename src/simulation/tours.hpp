@@ -19,7 +19,7 @@
 #include <random>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 /// Routes of the mesh that an Euler walk drives twice: the perimeter's landmarks of odd degree are
 /// paired in order (1st with 2nd, 3rd with 4th, ...), and the perimeter between each pair is
@@ -45,4 +45,4 @@ namespace trussmap {
 /// From `start` until every route has been driven.
 [[nodiscard]] std::vector<int> random_walk(const Mesh& mesh, int start, std::mt19937_64& random);
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

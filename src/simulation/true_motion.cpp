@@ -21,7 +21,7 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::simulation {
 namespace {
 
 constexpr int kPasses = 60;
@@ -410,4 +410,4 @@ TrueMotion lay_path(const Mesh& mesh, const std::vector<int>& walk, const Drivin
   return motion;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -25,7 +25,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 /// What a path gives way to. Empty lists: to nothing.
 struct PathBias {
@@ -64,4 +64,4 @@ struct PathBias {
                                   const DrivingStyle& style, std::uint64_t seed,
                                   const PathBias& bias = {}, const DrivingManner& manner = {});
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -15,7 +15,7 @@
 #include <Eigen/Dense>
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::simulation {
 namespace {
 
 using RowGain = std::function<double(Channel)>;
@@ -55,7 +55,7 @@ ShownRow two_wheels(const TrueRow& row, const RowGain& g, double wheelbase) {
 class RollingWheels {
  public:
   explicit RollingWheels(const Robot& robot) {
-    const std::vector<WheelPlace> places = wheel_places(robot);
+    const std::vector<WheelPlace> places = effects::wheel_places(robot);
     if (places.empty()) {
       together_ = robot.matrix;
       ways_ = together_.completeOrthogonalDecomposition().pseudoInverse();
@@ -198,7 +198,7 @@ Eigen::VectorXd as_vector(const std::vector<double>& numbers) {
 }
 
 bool steers(const Robot& robot) {
-  return is_of_drive(Channel::steer, robot);
+  return effects::is_of_drive(Channel::steer, robot);
 }
 
 }  // namespace
@@ -250,4 +250,4 @@ std::vector<double> misreading_of(const ShownRow& row, double duration, double t
   return listed(SteeredWheel(robot).readings(misread, none, reading[1]) - reading);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

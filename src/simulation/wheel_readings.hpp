@@ -29,7 +29,7 @@
 #include <map>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 /// g of each channel that something acts on, one value per row.
 using ChannelGains = std::map<Channel, std::vector<double>>;
@@ -53,4 +53,4 @@ struct ShownRow {
                                                 double travel_share, double turn_share,
                                                 const Robot& robot);
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -19,6 +19,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace simulation;
+
 namespace {
 
 constexpr double kPatience = 1.5;  // of the rests round a drive whose sightings are stamped late
@@ -81,7 +83,7 @@ std::vector<std::vector<double>> record_wheels(const TrueMotion& motion, const W
   const Robot& geometry = robot.geometry;
   const std::vector<ShownRow> rows = shown_by_wheels(motion, geometry, gains);
   const std::vector<LegMisreading> legs = leg_misreadings(motion, robot.rough, seed);
-  const bool steers = is_of_drive(Channel::steer, geometry);
+  const bool steers = effects::is_of_drive(Channel::steer, geometry);
   std::vector<std::vector<double>> columns(rows.front().readings.size());
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const double duration = motion.rows[row].duration;
@@ -338,6 +340,10 @@ void check(const WheeledRobot& robot) {
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::simulation {
+
 Recording record(const TrueMotion& motion, const Mesh& mesh, const WheeledRobot& robot,
                  std::uint64_t seed, const ChannelGains& gains) {
   check(robot);
@@ -379,6 +385,10 @@ std::vector<SurveyPoint> survey(const Mesh& mesh, double sd, std::uint64_t seed)
   return points;
 }
 
+}  // namespace trussmap::simulation
+
+namespace trussmap {
+
 namespace {
 
 /// `points` are those of all landmarks, in order.
@@ -391,11 +401,19 @@ void survey_headings(double sd, std::uint64_t seed, std::vector<SurveyPoint>& po
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::simulation {
+
 std::vector<SurveyPoint> survey(const Mesh& mesh, const WheeledRobot& robot, std::uint64_t seed) {
   std::vector<SurveyPoint> points = survey(mesh, robot.noise.survey, seed);
   if (robot.markers) survey_headings(robot.noise.yaw, seed, points);
   return points;
 }
+
+}  // namespace trussmap::simulation
+
+namespace trussmap {
 
 SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
                               const DrivingStyle& style, const WheeledRobot& robot,

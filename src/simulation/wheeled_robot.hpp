@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::simulation {
 
 /// What the robot records on this motion, without the survey. Throws std::invalid_argument on
 /// noise that is negative or not finite, on a wheelbase or reach that is not positive, and on
@@ -26,4 +26,4 @@ namespace trussmap {
 [[nodiscard]] std::vector<SurveyPoint> survey(const Mesh& mesh, const WheeledRobot& robot,
                                               std::uint64_t seed);
 
-}  // namespace trussmap
+}  // namespace trussmap::simulation

@@ -13,7 +13,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 
-namespace trussmap {
+namespace trussmap::statistics {
 namespace {
 
 template <typename Distribution>
@@ -78,4 +78,4 @@ double fisher_p_value(double F, double dof_above, double dof_below) {
   return upper_tail(boost::math::fisher_f(dof_above, dof_below), F);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::statistics

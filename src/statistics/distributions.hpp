@@ -4,7 +4,7 @@
 // Tails and quantiles of the usual distributions. A p-value is an upper tail.
 #pragma once
 
-namespace trussmap {
+namespace trussmap::statistics {
 
 /// Of chi^2; 1 for no degrees of freedom.
 [[nodiscard]] double chi2_p_value(double chi2, int dof);
@@ -29,4 +29,4 @@ namespace trussmap {
 
 [[nodiscard]] double fisher_p_value(double F, double dof_above, double dof_below);
 
-}  // namespace trussmap
+}  // namespace trussmap::statistics

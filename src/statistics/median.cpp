@@ -6,7 +6,7 @@
 #include <iterator>
 #include <limits>
 
-namespace trussmap {
+namespace trussmap::statistics {
 
 double median(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -15,4 +15,4 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::statistics

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::statistics {
 
 /// The upper one of an even number; NaN of none.
 [[nodiscard]] double median(std::vector<double> values);
 
-}  // namespace trussmap
+}  // namespace trussmap::statistics

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace trussmap {
+namespace trussmap::statistics {
 
 double bonferroni(double p_value, double tests) {
   return std::min(1.0, tests * p_value);
@@ -32,4 +32,4 @@ std::vector<double> holm(const std::vector<double>& p_values, const std::vector<
   return adjusted;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::statistics

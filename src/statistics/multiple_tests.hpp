@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::statistics {
 
 /// A p-value that is the least of so many, or one of them: min(1, tests p).
 [[nodiscard]] double bonferroni(double p_value, double tests);
@@ -21,4 +21,4 @@ namespace trussmap {
 [[nodiscard]] std::vector<double> holm(const std::vector<double>& p_values,
                                        const std::vector<int>& tests, double all);
 
-}  // namespace trussmap
+}  // namespace trussmap::statistics

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace trussmap {
+namespace trussmap::statistics {
 
 /// Normal errors, one after the other.
 struct NormalDraws {
@@ -14,4 +14,4 @@ struct NormalDraws {
   double operator()(double sd) { return sd * normal(random); }
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::statistics

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <numbers>
 
-namespace trussmap {
+namespace trussmap::statistics {
 namespace {
 
 /// Derivatives of the form's cumulant generating function at z < 1/(2 max weight).
@@ -70,4 +70,4 @@ double largest_square_p_value(double value, const std::vector<double>& cosines) 
                            length / std::numbers::pi * std::exp(-0.5 * std::max(0.0, value)));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::statistics

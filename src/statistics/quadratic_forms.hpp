@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::statistics {
 
 /// How likely sum_k weight_k z_k^2 of independent standard normal z_k exceeds `value`, by
 /// saddlepoint (Kuonen 1999, Biometrika 86), off by a tenth of itself at most. Weights below 0
@@ -18,4 +18,4 @@ namespace trussmap {
 /// path on the sphere).
 [[nodiscard]] double largest_square_p_value(double value, const std::vector<double>& cosines);
 
-}  // namespace trussmap
+}  // namespace trussmap::statistics

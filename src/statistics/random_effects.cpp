@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::statistics {
 namespace {
 
 constexpr double kMadToSd = 1.4826;
@@ -189,4 +189,4 @@ RandomEffects random_effects(const std::vector<MemberEstimate>& members, std::si
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::statistics

@@ -20,7 +20,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::statistics {
 
 struct MemberEstimate {
   double value = 0.0;
@@ -53,4 +53,4 @@ struct RandomEffects {
 [[nodiscard]] RandomEffects random_effects(const std::vector<MemberEstimate>& members,
                                            std::size_t groups, double level);
 
-}  // namespace trussmap
+}  // namespace trussmap::statistics

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::statistics {
 
 /// In their order; all where they are no more than `most`.
 template <typename Value>
@@ -20,4 +20,4 @@ template <typename Value>
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::statistics

@@ -8,7 +8,7 @@
 #include <system_error>
 #include <unistd.h>
 
-namespace trussmap {
+namespace trussmap::store {
 namespace {
 
 constexpr int kPatience = 1000;  // ms that another program may take to get out of the way
@@ -241,4 +241,4 @@ bool Database::in_transaction() const {
   return sqlite3_get_autocommit(handle()) == 0;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::store

@@ -16,7 +16,7 @@
 struct sqlite3;
 struct sqlite3_stmt;
 
-namespace trussmap {
+namespace trussmap::store {
 
 class DatabaseError : public std::runtime_error {
  public:
@@ -38,11 +38,11 @@ class DamagedCell : public std::invalid_argument {
 class Database;
 
 /// Parameters and columns count from 0. Calls throw DatabaseError.
-class Statement final : public RowReader, public RowWriter {
+class Statement final : public text::RowReader, public text::RowWriter {
  public:
   Statement(const Database& database, const std::string& sql);
 
-  using RowWriter::bind;
+  using text::RowWriter::bind;
   Statement& bind(int place, double value) override;
   Statement& bind(int place, std::int64_t value) override;
   Statement& bind(int place, int value) { return bind(place, std::int64_t{value}); }
@@ -101,4 +101,4 @@ class Database {
   std::unique_ptr<sqlite3, Close> database_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::store

@@ -10,14 +10,14 @@
 #include <sstream>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::store {
 namespace {
 
 /// The facts that are options, as the columns of a row.
-class OptionFacts final : public RowReader, public RowWriter {
+class OptionFacts final : public text::RowReader, public text::RowWriter {
  public:
   explicit OptionFacts(Facts& facts) : facts_(facts) {
-    std::istringstream columns(kOptionsTable.columns);
+    std::istringstream columns(map::kOptionsTable.columns);
     for (std::string name; std::getline(columns >> std::ws, name, ',');) names_.push_back(name);
   }
 
@@ -28,7 +28,7 @@ class OptionFacts final : public RowReader, public RowWriter {
   [[nodiscard]] std::string text(int column) const override { return facts_.text(name(column)); }
   [[nodiscard]] bool is_null(int /*column*/) const override { return false; }
 
-  using RowWriter::bind;
+  using text::RowWriter::bind;
   OptionFacts& bind(int column, double value) override { return put(column, value); }
   OptionFacts& bind(int column, std::int64_t value) override { return put(column, value); }
   OptionFacts& bind(int column, const std::string& text) override { return put(column, text); }
@@ -81,12 +81,12 @@ void create_facts_table(const Database& database) {
 }
 
 MapBuilderOptions options_among(Facts& facts) {
-  return options_in(OptionFacts(facts));
+  return map::options_in(OptionFacts(facts));
 }
 
 void put_options_among(Facts& facts, const MapBuilderOptions& options) {
   OptionFacts row(facts);
-  put_options(row, options);
+  map::put_options(row, options);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::store

@@ -9,7 +9,7 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::store {
 
 class Facts {
  public:
@@ -35,4 +35,4 @@ void create_facts_table(const Database& database);
 [[nodiscard]] MapBuilderOptions options_among(Facts& facts);
 void put_options_among(Facts& facts, const MapBuilderOptions& options);
 
-}  // namespace trussmap
+}  // namespace trussmap::store

@@ -9,7 +9,7 @@
 #include <system_error>
 #include <unistd.h>
 
-namespace trussmap {
+namespace trussmap::store {
 namespace {
 
 [[noreturn]] void fail(int descriptor) {
@@ -44,4 +44,4 @@ FileLock::~FileLock() {
   ::close(descriptor_);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::store

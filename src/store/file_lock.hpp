@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-namespace trussmap {
+namespace trussmap::store {
 
 class FileLock {
  public:
@@ -23,4 +23,4 @@ class FileLock {
   int descriptor_ = -1;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::store

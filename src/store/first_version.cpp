@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::store {
 
 void create_first_version(const Database& database) {
   database.run(R"sql(
@@ -77,4 +77,4 @@ void upgrade_first_version(const Database& database) {
   )sql");
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::store

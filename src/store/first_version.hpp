@@ -8,7 +8,7 @@
 
 #include "store/database.hpp"
 
-namespace trussmap {
+namespace trussmap::store {
 
 /// Makes the tables of the first version, empty.
 void create_first_version(const Database& database);
@@ -16,4 +16,4 @@ void create_first_version(const Database& database);
 /// To the present tables. Within a transaction.
 void upgrade_first_version(const Database& database);
 
-}  // namespace trussmap
+}  // namespace trussmap::store

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::store {
 namespace {
 
 constexpr int kCallKinds = 5;
@@ -25,18 +25,18 @@ Arrival::Kind outcome_of(std::int64_t number) {
 }
 
 /// -1: null.
-std::int64_t number_in(const RowReader& row, int column) {
+std::int64_t number_in(const text::RowReader& row, int column) {
   return row.is_null(column) ? -1 : row.integer(column);
 }
 
 /// 0 where there is none: of which legs have what, their kind tells.
-double figure_at(const RowReader& row, int column) {
+double figure_at(const text::RowReader& row, int column) {
   const double value = row.real(column);
   if (!std::isfinite(value)) throw std::invalid_argument("a leg that is not finite");
   return value;
 }
 
-std::string landmark_in(const RowReader& row, int column, const LandmarkGraph& graph) {
+std::string landmark_in(const text::RowReader& row, int column, const LandmarkGraph& graph) {
   const std::int64_t landmark = number_in(row, column);
   if (landmark >= graph.landmarks()) throw std::invalid_argument("a leg to no landmark");
   return landmark < 0 ? std::string() : graph.landmark(static_cast<int>(landmark)).name;
@@ -55,29 +55,29 @@ void create_leg_tables(const Database& database) {
   )sql");
 }
 
-void put_leg(RowWriter& row, const BuilderCall& call, std::int64_t number,
+void put_leg(text::RowWriter& row, const map::BuilderCall& call, std::int64_t number,
              const std::optional<std::int64_t>& session) {
   row.bind(0, number).bind(2, static_cast<int>(call.kind));
   if (session) row.bind(1, *session);
   if (call.from >= 0) row.bind(3, call.from);
   if (call.to >= 0) row.bind(4, call.to);
   row.bind(5, call.reckoned ? 1 : 0);
-  if (call.reckoned || call.kind == BuilderCall::Kind::compass) {
+  if (call.reckoned || call.kind == map::BuilderCall::Kind::compass) {
     const Pose& moved = call.motion.displacement;
     const Matrix3& C = call.motion.covariance;
     row.bind(6, moved.position()).bind(8, moved.heading);
     row.bind(9, Matrix2(C.topLeftCorner<2, 2>())).bind(12, C(0, 2)).bind(13, C(1, 2));
     row.bind(14, C(2, 2));
-  } else if (call.kind <= BuilderCall::Kind::observe) {
+  } else if (call.kind <= map::BuilderCall::Kind::observe) {
     row.bind(6, call.leg.displacement).bind(9, call.leg.covariance);
   }
-  if (call.reckoned || call.kind == BuilderCall::Kind::start) {
+  if (call.reckoned || call.kind == map::BuilderCall::Kind::start) {
     row.bind(15, call.seen.offset_robot).bind(17, call.seen.covariance_robot);
   }
   if (call.outcome) row.bind(20, static_cast<int>(*call.outcome));
 }
 
-StoredLeg leg_in(const RowReader& row, std::int64_t number, const LandmarkGraph& graph,
+StoredLeg leg_in(const text::RowReader& row, std::int64_t number, const LandmarkGraph& graph,
                  std::int64_t sessions) {
   const auto at = [&row](int column) { return figure_at(row, column); };
   if (row.integer(0) != number) throw std::invalid_argument("a leg that is misnumbered");
@@ -127,4 +127,4 @@ std::vector<StoredSession> sessions_in(const Database& database) {
   return sessions;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::store

@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::store {
 
 /// Makes the tables, empty.
 void create_leg_tables(const Database& database);
@@ -24,11 +24,11 @@ inline constexpr const char* kPutLeg =
 inline constexpr const char* kLegs = "SELECT * FROM legs ORDER BY number";
 
 /// `session`: its place among the sessions, if there is one.
-void put_leg(RowWriter& row, const BuilderCall& call, std::int64_t number,
+void put_leg(text::RowWriter& row, const map::BuilderCall& call, std::int64_t number,
              const std::optional<std::int64_t>& session);
 
 /// A row of kLegs. `graph`: the store's landmarks; `sessions`: their number.
-[[nodiscard]] StoredLeg leg_in(const RowReader& row, std::int64_t number,
+[[nodiscard]] StoredLeg leg_in(const text::RowReader& row, std::int64_t number,
                                const LandmarkGraph& graph, std::int64_t sessions);
 
 /// The number of legs.
@@ -39,4 +39,4 @@ void put_leg(RowWriter& row, const BuilderCall& call, std::int64_t number,
 
 [[nodiscard]] std::vector<StoredSession> sessions_in(const Database& database);
 
-}  // namespace trussmap
+}  // namespace trussmap::store

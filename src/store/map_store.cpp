@@ -14,6 +14,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace store;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -213,7 +215,7 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
       put_options_among(*facts_, builder_->options());  // which may have been set on the way
     }
     std::int64_t number = legs_;
-    for (const BuilderCall& call : journal_) {
+    for (const map::BuilderCall& call : journal_) {
       put_leg(*put_leg_, call, number++, place);
       put_leg_->run();
     }
@@ -241,8 +243,8 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
   std::optional<Facts> facts_;
   std::optional<Statement> put_leg_;
   std::optional<MapBuilder> builder_;
-  std::vector<BuilderCall> journal_;  // of the present call
-  bool busy_ = false;                 // a call is under way
+  std::vector<map::BuilderCall> journal_;  // of the present call
+  bool busy_ = false;                      // a call is under way
   std::int64_t legs_ = 0;
   std::int64_t version_ = 0;  // changes when another program has written
 };

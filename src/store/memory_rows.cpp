@@ -13,26 +13,28 @@
 #include <string>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::store {
 namespace {
 
-class DatabaseTables final : public MemoryTables {
+class DatabaseTables final : public map::MemoryTables {
  public:
   explicit DatabaseTables(const Database& database) : database_(database) {}
 
-  int rows(const MemoryTable& table) override {
-    return static_cast<int>(database_.number(joined("SELECT count(*) FROM ", table.name)));
+  int rows(const map::MemoryTable& table) override {
+    return static_cast<int>(database_.number(text::joined("SELECT count(*) FROM ", table.name)));
   }
-  void each(const MemoryTable& table, const std::function<void(const RowReader&)>& visit) override {
+  void each(const map::MemoryTable& table,
+            const std::function<void(const text::RowReader&)>& visit) override {
     const std::string columns = table.columns;
     const std::string first = columns.substr(0, columns.find(','));
     Statement rows(database_,
-                   joined("SELECT ", columns, " FROM ", table.name, " ORDER BY ", first));
+                   text::joined("SELECT ", columns, " FROM ", table.name, " ORDER BY ", first));
     for (std::int64_t row = 1; rows.step(); ++row) {
       try {
         visit(rows);
       } catch (const std::invalid_argument& error) {
-        throw std::invalid_argument(joined(error.what(), " (row ", row, " of ", table.name, ")"));
+        throw std::invalid_argument(
+            text::joined(error.what(), " (row ", row, " of ", table.name, ")"));
       }
     }
   }
@@ -43,16 +45,16 @@ class DatabaseTables final : public MemoryTables {
 
 /// A name that is shown to people, and that files of maps can hold.
 void check_name(const std::string& name) {
-  if (!name.empty() && is_plain_text(name)) return;
+  if (!name.empty() && text::is_plain_text(name)) return;
   throw std::invalid_argument(
       "a landmark whose name is empty or holds a control character, expected printable text");
 }
 
-bool same(const Average& a, const Average& b) {
+bool same(const map::Average& a, const map::Average& b) {
   return a.count == b.count && a.mean == b.mean && a.variance == b.variance;
 }
 
-bool same(const ReckonedRoute& a, const ReckonedRoute& b) {
+bool same(const map::ReckonedRoute& a, const map::ReckonedRoute& b) {
   return same(a.length, b.length) && same(a.direction, b.direction) && a.corner == b.corner &&
          a.bar.traversals == b.bar.traversals;
 }
@@ -132,14 +134,14 @@ MemoryRows::MemoryRows(const Database& database)
                  "driven_yt = ?, driven_tt = ?, said_x = ?, said_y = ?, said_xx = ?, said_xy = ?, "
                  "said_yy = ?, said_reading = ?, said_reading_variance = ?") {}
 
-BuilderMemory MemoryRows::load(const MapBuilderOptions& options) {
+map::BuilderMemory MemoryRows::load(const MapBuilderOptions& options) {
   DatabaseTables tables(database_);
   written_ = {};
-  BuilderMemory memory = load_memory(tables, options);
+  map::BuilderMemory memory = map::load_memory(tables, options);
   for (int k = 0; k < memory.graph.landmarks(); ++k) {
     check_name(memory.graph.landmark(k).name);
     written_.positions.push_back(memory.graph.landmark(k).position);
-    written_.roots.push_back(root_of(memory, k));
+    written_.roots.push_back(map::root_of(memory, k));
   }
   for (int number = 0; number < memory.graph.routes(); ++number) {
     const Route& route = memory.graph.route(number);
@@ -153,22 +155,22 @@ BuilderMemory MemoryRows::load(const MapBuilderOptions& options) {
   return memory;
 }
 
-void MemoryRows::save(const BuilderMemory& memory, const MapBuilderOptions& options) {
+void MemoryRows::save(const map::BuilderMemory& memory, const MapBuilderOptions& options) {
   save_landmarks(memory);
-  save_routes(memory, weighs_each(options));
+  save_routes(memory, map::weighs_each(options));
   save_reckoned(memory);
   save_chain(memory);
   save_gate(memory);
   save_state(memory);
 }
 
-void MemoryRows::save_landmarks(const BuilderMemory& memory) {
+void MemoryRows::save_landmarks(const map::BuilderMemory& memory) {
   for (int k = 0; k < memory.graph.landmarks(); ++k) {
     const Vector2& at = memory.graph.landmark(k).position;
-    const int root = root_of(memory, k);
+    const int root = map::root_of(memory, k);
     if (idx(k) >= written_.positions.size()) {
       check_name(memory.graph.landmark(k).name);
-      put_landmark(put_landmark_, memory, k);
+      map::put_landmark(put_landmark_, memory, k);
       put_landmark_.run();
       written_.positions.push_back(at);
       written_.roots.push_back(root);
@@ -180,39 +182,39 @@ void MemoryRows::save_landmarks(const BuilderMemory& memory) {
   }
 }
 
-void MemoryRows::save_routes(const BuilderMemory& memory, bool weighed) {
+void MemoryRows::save_routes(const map::BuilderMemory& memory, bool weighed) {
   for (int number = 0; number < memory.graph.routes(); ++number) {
     const Route& route = memory.graph.route(number);
     const Written::RouteRow now{route.traversals, route.orientation};
     const bool there = idx(number) < written_.routes.size();
     if (there && written_.routes[idx(number)] == now) continue;
-    put_route(put_route_, memory, number, weighed);
+    map::put_route(put_route_, memory, number, weighed);
     put_route_.run();
     if (!there) written_.routes.emplace_back();
     written_.routes[idx(number)] = now;
   }
 }
 
-void MemoryRows::save_reckoned(const BuilderMemory& memory) {
+void MemoryRows::save_reckoned(const map::BuilderMemory& memory) {
   for (std::size_t n = 0; n < memory.reckoned.size(); ++n) {
-    const ReckonedRoute& one = memory.reckoned[n];
+    const map::ReckonedRoute& one = memory.reckoned[n];
     if (n < written_.reckoned.size() && same(one, written_.reckoned[n])) continue;
-    put_reckoned(put_reckoned_, memory, static_cast<int>(n));
+    map::put_reckoned(put_reckoned_, memory, static_cast<int>(n));
     put_reckoned_.run();
     if (n == written_.reckoned.size()) written_.reckoned.emplace_back();
     written_.reckoned[n] = one;
   }
   for (std::size_t n = 0; n < memory.corners.size(); ++n) {
-    const CornerAverage& one = memory.corners[n];
+    const map::CornerAverage& one = memory.corners[n];
     if (n < written_.corners.size() && same(one.angle, written_.corners[n].angle)) continue;
-    put_corner(put_corner_, memory, static_cast<int>(n));
+    map::put_corner(put_corner_, memory, static_cast<int>(n));
     put_corner_.run();
     if (n == written_.corners.size()) written_.corners.emplace_back();
     written_.corners[n] = one;
   }
 }
 
-void MemoryRows::save_chain(const BuilderMemory& memory) {
+void MemoryRows::save_chain(const map::BuilderMemory& memory) {
   const std::vector<int>& chain = memory.chain.landmarks();
   std::vector<int>& written = written_.chain;
   if (chain.size() < written.size()) {
@@ -221,19 +223,19 @@ void MemoryRows::save_chain(const BuilderMemory& memory) {
   }
   for (std::size_t place = 0; place < chain.size(); ++place) {
     if (place < written.size() && written[place] == chain[place]) continue;
-    put_link(put_link_, memory, static_cast<int>(place));
+    map::put_link(put_link_, memory, static_cast<int>(place));
     put_link_.run();
   }
   written = chain;
 }
 
-void MemoryRows::save_gate(const BuilderMemory& memory) {
+void MemoryRows::save_gate(const map::BuilderMemory& memory) {
   const auto& misfits = memory.gate.remembered();  // never fewer than before
   if (!std::equal(misfits.begin(), misfits.end(), written_.misfits.begin(),
                   written_.misfits.end())) {
     written_.misfits.assign(misfits.begin(), misfits.end());
     for (std::size_t k = 0; k < misfits.size(); ++k) {
-      put_misfit(put_misfit_, memory, static_cast<int>(k));
+      map::put_misfit(put_misfit_, memory, static_cast<int>(k));
       put_misfit_.run();
     }
   }
@@ -243,15 +245,15 @@ void MemoryRows::save_gate(const BuilderMemory& memory) {
   }
   database_.run("DELETE FROM left_out");
   for (std::size_t k = 0; k < memory.left_out.size(); ++k) {
-    put_left_out(put_left_out_, memory, static_cast<int>(k));
+    map::put_left_out(put_left_out_, memory, static_cast<int>(k));
     put_left_out_.run();
   }
   written_.left_out = memory.left_out;
 }
 
-void MemoryRows::save_state(const BuilderMemory& memory) {
-  put_state(put_state_, memory);
+void MemoryRows::save_state(const map::BuilderMemory& memory) {
+  map::put_state(put_state_, memory);
   put_state_.run();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::store

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::store {
 
 /// Makes the tables, with an empty memory in them. Within a transaction.
 void create_memory_tables(const Database& database);
@@ -20,11 +20,11 @@ class MemoryRows {
   explicit MemoryRows(const Database& database);
 
   /// Throws std::invalid_argument, saying what, where the rows cannot be a builder's memory.
-  [[nodiscard]] BuilderMemory load(const MapBuilderOptions& options);
+  [[nodiscard]] map::BuilderMemory load(const MapBuilderOptions& options);
 
   /// Writes what differs from the last load or save. After a transaction that was rolled back, call
   /// load first.
-  void save(const BuilderMemory& memory, const MapBuilderOptions& options);
+  void save(const map::BuilderMemory& memory, const MapBuilderOptions& options);
 
  private:
   struct Written {
@@ -36,19 +36,19 @@ class MemoryRows {
       bool operator==(const RouteRow&) const = default;
     };
     std::vector<RouteRow> routes;  ///< of which either changes whenever the route does
-    std::vector<ReckonedRoute> reckoned;
-    std::vector<CornerAverage> corners;
+    std::vector<map::ReckonedRoute> reckoned;
+    std::vector<map::CornerAverage> corners;
     std::vector<int> chain;
     std::vector<double> misfits;
     std::vector<LeftOutArrival> left_out;
   };
 
-  void save_landmarks(const BuilderMemory& memory);
-  void save_routes(const BuilderMemory& memory, bool weighed);
-  void save_reckoned(const BuilderMemory& memory);
-  void save_chain(const BuilderMemory& memory);
-  void save_gate(const BuilderMemory& memory);
-  void save_state(const BuilderMemory& memory);
+  void save_landmarks(const map::BuilderMemory& memory);
+  void save_routes(const map::BuilderMemory& memory, bool weighed);
+  void save_reckoned(const map::BuilderMemory& memory);
+  void save_chain(const map::BuilderMemory& memory);
+  void save_gate(const map::BuilderMemory& memory);
+  void save_state(const map::BuilderMemory& memory);
 
   const Database& database_;
   Written written_;
@@ -64,4 +64,4 @@ class MemoryRows {
   Statement put_state_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::store

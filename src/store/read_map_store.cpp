@@ -12,6 +12,8 @@
 #include <system_error>
 
 namespace trussmap {
+using namespace store;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,7 +22,8 @@ namespace fs = std::filesystem;
 template <typename Read>
 auto reading(const fs::path& file, const Read& read) {
   return naming_store(file, [&] {
-    if (!is_present(file)) throw InputError(file.string(), 0, "is missing, expected a map store");
+    if (!files::is_present(file))
+      throw InputError(file.string(), 0, "is missing, expected a map store");
     const Database database(place_of_store(file), Database::Access::read);
     database.run("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; BEGIN");
     if (!is_store(file, database)) {

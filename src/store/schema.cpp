@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "store/schema.hpp"
 
-namespace trussmap {
+namespace trussmap::store {
 namespace {
 
 /// Blanks and ends of lines as one blank each.
@@ -30,4 +30,4 @@ std::vector<std::string> schema_of(const Database& database,
   return schema;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::store

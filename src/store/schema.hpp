@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::store {
 
 /// The statements that made these tables, their indices and views of their names, and all triggers,
 /// in a fixed order; blanks and ends of lines do not count.
 [[nodiscard]] std::vector<std::string> schema_of(const Database& database,
                                                  const std::vector<std::string>& tables);
 
-}  // namespace trussmap
+}  // namespace trussmap::store

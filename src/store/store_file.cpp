@@ -31,6 +31,10 @@ bool is_map_store(const fs::path& file) {
   return ending == ".db" || ending == ".sqlite" || ending == ".sqlite3";
 }
 
+}  // namespace trussmap
+
+namespace trussmap::store {
+
 fs::path place_of_database(const fs::path& file, const std::string& kind) {
   if (file.empty()) throw InputError(kind, 0, "has no name, expected a file");
   std::error_code failed;
@@ -82,4 +86,4 @@ InputError said_of_store(const fs::path& file, const DatabaseError& error) {
   return {file.string(), 0, std::string("cannot be read or written: ") + error.what()};
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::store

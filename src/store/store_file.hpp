@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::store {
 
 /// With a folder in front: SQLite gives a meaning of its own to some names. `kind` of store in
 /// words. Throws InputError where no file can be.
@@ -68,4 +68,4 @@ auto undamaged_store(const std::filesystem::path& file, const Call& call) {
   }
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::store

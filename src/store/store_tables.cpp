@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::store {
 namespace {
 
 constexpr std::int64_t kApplication = 0x7472736d;  // "trsm"
@@ -48,8 +48,8 @@ const std::vector<std::string>& first_tables() {
 }  // namespace
 
 void create_store(const Database& database, const MapBuilderOptions& options) {
-  database.run(joined("PRAGMA application_id = ", kApplication));
-  database.run(joined("PRAGMA user_version = ", kVersion));
+  database.run(text::joined("PRAGMA application_id = ", kApplication));
+  database.run(text::joined("PRAGMA user_version = ", kVersion));
   create_facts_table(database);
   create_leg_tables(database);
   create_memory_tables(database);
@@ -64,7 +64,7 @@ bool is_store(const std::filesystem::path& file, const Database& database) {
   if (application != kApplication) throw InputError(file.string(), 0, "is no map store");
   if (version != kVersion && version != kFirstVersion) {
     throw InputError(file.string(), 0,
-                     joined("is a map store of version ", version, ", expected ", kVersion));
+                     text::joined("is a map store of version ", version, ", expected ", kVersion));
   }
   if (tables_of(database) != (version == kFirstVersion ? first_tables() : made_tables())) {
     throw InputError(file.string(), 0, "is damaged: its tables are not those of a map store");
@@ -76,4 +76,4 @@ bool is_of_first_version(const Database& database) {
   return database.number("PRAGMA user_version") == kFirstVersion;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::store

@@ -9,7 +9,7 @@
 
 #include <filesystem>
 
-namespace trussmap {
+namespace trussmap::store {
 
 /// Makes the present tables, with options and an empty memory in them. Within a transaction.
 void create_store(const Database& database, const MapBuilderOptions& options);
@@ -20,4 +20,4 @@ void create_store(const Database& database, const MapBuilderOptions& options);
 /// Of one that is_store().
 [[nodiscard]] bool is_of_first_version(const Database& database);
 
-}  // namespace trussmap
+}  // namespace trussmap::store

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::text {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
@@ -24,4 +24,4 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::text

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::text {
 
 class FnvHash {
  public:
@@ -28,4 +28,4 @@ class FnvHash {
   std::uint64_t state_ = 0xcbf29ce484222325U;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::text

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::text {
 
 template <typename Value, std::size_t Count>
 using NamedValues = std::array<std::pair<Value, std::string_view>, Count>;
@@ -38,4 +38,4 @@ template <typename Value, std::size_t Count>
                               all);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::text

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::text {
 
 std::string shortest_text(double value) {
   std::array<char, 32> buffer{};
@@ -61,4 +61,4 @@ double rounded_within(double value, double scale) {
   return std::round(value * parts) / parts;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::text

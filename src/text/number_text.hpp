@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::text {
 
 /// The shortest text that reads back to the same bits: "0.1", "1e-07".
 [[nodiscard]] std::string shortest_text(double value);
@@ -41,4 +41,4 @@ template <typename... Parts>
 /// cannot tell from `value`, with a short text. `scale` above 0.
 [[nodiscard]] double rounded_within(double value, double scale);
 
-}  // namespace trussmap
+}  // namespace trussmap::text

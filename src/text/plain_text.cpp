@@ -138,8 +138,12 @@ std::string escaped_controls(std::string_view text, bool lines) {
   return result;
 }
 
+}  // namespace trussmap
+
+namespace trussmap::text {
+
 bool is_plain_text(std::string_view text) {
   return escaped_controls(text) == text;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::text

@@ -7,9 +7,9 @@
 
 #include <string_view>
 
-namespace trussmap {
+namespace trussmap::text {
 
 /// Whether escaped_controls (table.hpp) leaves it as it is; XML can hold it then.
 [[nodiscard]] bool is_plain_text(std::string_view text);
 
-}  // namespace trussmap
+}  // namespace trussmap::text

@@ -34,7 +34,7 @@ std::string without_trailing_space(std::string line) {
 std::string format_table(const TextTable& table) {
   std::vector<std::vector<std::string>> rows = table.rows;
   for (auto& row : rows) {
-    for (std::string& cell : row) cell = without_sign_of_nothing(shortened_words(cell));
+    for (std::string& cell : row) cell = text::without_sign_of_nothing(shortened_words(cell));
   }
   std::vector<std::size_t> widths(table.columns.size(), 0);
   for (const auto& row : rows) {
@@ -87,7 +87,7 @@ QuantityText quantity_text(double value, double standard_error) {
     return {fmt::format("{:.6g}", value), fmt::format("{:.1e}", standard_error)};
   }
   const int shown = std::max(decimals, 0);
-  return {without_sign_of_nothing(fmt::format("{:.{}f}", value, shown)),
+  return {text::without_sign_of_nothing(fmt::format("{:.{}f}", value, shown)),
           fmt::format("{:.{}f}", standard_error, shown)};
 }
 

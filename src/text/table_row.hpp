@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <string>
 
-namespace trussmap {
+namespace trussmap::text {
 
 class RowReader {
  public:
@@ -44,4 +44,4 @@ class RowWriter {
   ~RowWriter() = default;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::text

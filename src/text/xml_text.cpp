@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "text/xml_text.hpp"
 
-namespace trussmap {
+namespace trussmap::text {
 
 std::string xml_escaped(const std::string& text) {
   std::string result;
@@ -27,4 +27,4 @@ std::string xml_escaped(const std::string& text) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::text

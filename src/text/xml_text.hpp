@@ -6,9 +6,9 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::text {
 
 /// Text for XML content and attributes.
 [[nodiscard]] std::string xml_escaped(const std::string& text);
 
-}  // namespace trussmap
+}  // namespace trussmap::text

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace trussmap {
+namespace trussmap::truss {
 namespace {
 
 /// Gradient of angle(d) by the far end; zero where d has no direction.
@@ -49,7 +49,7 @@ Element corner_element(int i, int j, int k, double stiffness, double angle) {
 }
 
 int ElasticTruss::add_joint(const Vector2& position) {
-  make_room(positions_);
+  geometry::make_room(positions_);
   at_.emplace_back();
   positions_.push_back(position);
   return joints() - 1;
@@ -65,8 +65,8 @@ int ElasticTruss::add_element(const Element& element) {
       }
     }
   }
-  make_room(elements_);
-  for (int n = 0; n < element.count(); ++n) make_room(at_[idx(element.joints[idx(n)])]);
+  geometry::make_room(elements_);
+  for (int n = 0; n < element.count(); ++n) geometry::make_room(at_[idx(element.joints[idx(n)])]);
   for (int n = 0; n < element.count(); ++n) {
     at_[idx(element.joints[idx(n)])].push_back(elements());
   }
@@ -196,4 +196,4 @@ Tangent ElasticTruss::tangent(int number) const {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::truss

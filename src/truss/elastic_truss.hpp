@@ -28,7 +28,7 @@
 #include <utility>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::truss {
 
 struct Element {
   enum class Kind : std::uint8_t { bar, length, direction, corner };
@@ -110,4 +110,4 @@ struct Strain {
 };
 [[nodiscard]] Strain strain_of(const ElasticTruss& truss, const Element& element);
 
-}  // namespace trussmap
+}  // namespace trussmap::truss

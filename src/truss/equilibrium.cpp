@@ -11,7 +11,7 @@
 #include <map>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::truss {
 namespace {
 
 // Places kept free, and how much the rows added there, which lengthen all later updates, may add to
@@ -27,7 +27,7 @@ constexpr double kLeastShare = 1e-12;
 
 /// Columns W with W W' = |B|, those of negative eigenvalues first, and how many these are.
 std::pair<Matrix2, int> signed_root(const Matrix2& B) {
-  const PlanarModes axes = planar_modes(B);
+  const linalg::PlanarModes axes = linalg::planar_modes(B);
   const Vector2 size = axes.eigenvalues;
   const int negative = (size[0] < 0.0 ? 1 : 0) + (size[1] < 0.0 ? 1 : 0);  // these ascend
   return {axes.eigenvectors * size.cwiseAbs().cwiseSqrt().asDiagonal(), negative};
@@ -86,7 +86,7 @@ void Equilibrium::relax(ElasticTruss& truss, const Enough& enough) {
     const double gain = 0.5 * f_.dot(u);
     if (!std::isfinite(gain)) {
       drop();
-      throw NotPositiveDefinite(0);
+      throw linalg::NotPositiveDefinite(0);
     }
     if (!(gain > 0.0)) break;
     for (int joint = 1; joint < truss.joints(); ++joint) before[idx(joint)] = truss.position(joint);
@@ -146,7 +146,7 @@ void Equilibrium::evaluate_changes(const ElasticTruss& truss) {
 std::vector<Vector2> Equilibrium::displacements(const ElasticTruss& truss,
                                                 const std::vector<std::pair<int, Vector2>>& loads) {
   follow(truss);
-  if (!sound_) throw NotPositiveDefinite(0);
+  if (!sound_) throw linalg::NotPositiveDefinite(0);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(f_.size());
   for (const auto& [joint, force] : loads) {
     if (!held(joint)) u.segment<2>(unknown_[idx(joint)]) += force;
@@ -224,7 +224,7 @@ void Equilibrium::follow(const ElasticTruss& truss) {
     changed_.clear();
     sound_ = is_sound();
     if (!sound_) factorise(truss);
-  } catch (const NotPositiveDefinite&) {
+  } catch (const linalg::NotPositiveDefinite&) {
     factorise(truss);
   } catch (...) {
     drop();
@@ -269,7 +269,7 @@ void Equilibrium::take_in_joint(const ElasticTruss& truss, int joint,
     terms_[idx(number)] = term;
   }
   for (int c = 0; c < 2; ++c) {
-    SparseMatrix column(f_.size(), 1);
+    linalg::SparseMatrix column(f_.size(), 1);
     std::vector<std::pair<int, double>> entries;
     for (const auto& [other, K] : row) {
       for (int r = 0; r < 2; ++r) {
@@ -320,7 +320,7 @@ void Equilibrium::change_term(const ElasticTruss& truss, int element, const Term
 
 void Equilibrium::update(const std::vector<Column>& columns, bool add) {
   if (columns.empty()) return;
-  SparseMatrix W(f_.size(), static_cast<Eigen::Index>(columns.size()));
+  linalg::SparseMatrix W(f_.size(), static_cast<Eigen::Index>(columns.size()));
   W.reserve(Eigen::VectorXi::Constant(W.cols(), 6));
   Eigen::Index c = 0;
   for (const Column& column : columns) {
@@ -344,8 +344,8 @@ void Equilibrium::update(const std::vector<Column>& columns, bool add) {
 namespace {
 
 struct Pattern {
-  std::vector<NodePair> pairs;      ///< of all joints: the elements' own, in order
-  std::vector<NodePair> couplings;  ///< of the joints from 1 on
+  std::vector<linalg::NodePair> pairs;      ///< of all joints: the elements' own, in order
+  std::vector<linalg::NodePair> couplings;  ///< of the joints from 1 on
 };
 
 Pattern pattern_of(const ElasticTruss& truss) {
@@ -367,18 +367,18 @@ Pattern pattern_of(const ElasticTruss& truss) {
 /// Joint 0 is held; places beyond the truss's joints come last.
 std::vector<int> order_of(const ElasticTruss& truss, const Pattern& pattern, int places) {
   std::vector<int> order{0};
-  for (const int joint : elimination_order(truss.joints() - 1, pattern.couplings)) {
+  for (const int joint : linalg::elimination_order(truss.joints() - 1, pattern.couplings)) {
     order.push_back(joint + 1);
   }
   for (int spare = truss.joints(); spare < places; ++spare) order.push_back(spare);
   return order;
 }
 
-BlockSystem system_of(const ElasticTruss& truss, int places, Kernel kernel) {
+linalg::BlockSystem system_of(const ElasticTruss& truss, int places, linalg::Kernel kernel) {
   const Pattern pattern = pattern_of(truss);
   std::vector<int> sizes(idx(places), 2);
   sizes[0] = 0;
-  BlockSystem system(sizes, pattern.pairs, order_of(truss, pattern, places), kernel);
+  linalg::BlockSystem system(sizes, pattern.pairs, order_of(truss, pattern, places), kernel);
   int pair = 0;
   for (int number = 0; number < truss.elements(); ++number) {
     const Element& one = truss.element(number);
@@ -408,7 +408,7 @@ void Equilibrium::factorise(const ElasticTruss& truss) {
     terms_[idx(number)] = term_of(truss, number);
     if (truss.element(number).kind != Element::Kind::bar) linear_ = false;
   }
-  const BlockSystem system = system_of(truss, places, Kernel::cholmod);
+  const linalg::BlockSystem system = system_of(truss, places, linalg::Kernel::cholmod);
   cholesky_.analyse(system.matrix());
   cholesky_.factorise(system.matrix());
   nonzeros_ = cholesky_.factor_nonzeros();
@@ -428,9 +428,9 @@ bool Equilibrium::is_sound() const {
 std::vector<Matrix2> flexibilities(const ElasticTruss& truss) {
   std::vector<Matrix2> result(idx(truss.joints()), Matrix2::Zero());
   if (truss.joints() < 2) return result;
-  BlockSystem system = system_of(truss, truss.joints(), Kernel::frontal);
+  linalg::BlockSystem system = system_of(truss, truss.joints(), linalg::Kernel::frontal);
   system.factorise();
-  if (!(system.least_pivot_share() >= kLeastShare)) throw NotPositiveDefinite(0);
+  if (!(system.least_pivot_share() >= kLeastShare)) throw linalg::NotPositiveDefinite(0);
   const Eigen::MatrixXd blocks = system.inverse_blocks();
   for (int joint = 1; joint < truss.joints(); ++joint) {
     result[idx(joint)] = blocks.block<2, 2>(0, system.offset(joint));
@@ -438,4 +438,4 @@ std::vector<Matrix2> flexibilities(const ElasticTruss& truss) {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::truss

@@ -20,7 +20,7 @@
 #include <array>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::truss {
 
 class Equilibrium {
  public:
@@ -81,11 +81,11 @@ class Equilibrium {
   bool sound_ = true;   ///< as the factor was last looked at
   Eigen::VectorXd f_;
   Eigen::VectorXd diagonal_;  ///< of K as the factor has it
-  SparseCholesky cholesky_{Ordering::fixed};
+  linalg::SparseCholesky cholesky_{linalg::Ordering::fixed};
 };
 
 /// Diagonal blocks of K^-1 per joint, as the truss lies; zero of joint 0, which is held. Throws
 /// NotPositiveDefinite. Cost: two factorisations.
 [[nodiscard]] std::vector<Matrix2> flexibilities(const ElasticTruss& truss);
 
-}  // namespace trussmap
+}  // namespace trussmap::truss

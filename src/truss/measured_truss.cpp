@@ -10,7 +10,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::truss {
 
 int MeasuredTruss::add_joint(const Vector2& about) {
   about_.push_back(about);
@@ -52,13 +52,13 @@ int MeasuredTruss::bar_between(int low, int high) {
   return last;
 }
 
-MeasuredTruss::Fit MeasuredTruss::fit(Kernel kernel) {
+MeasuredTruss::Fit MeasuredTruss::fit(linalg::Kernel kernel) {
   Fit result;
   result.positions = about_;
   if (about_.empty()) return result;
   // A part that nothing holds is not always noticed by its pivots, which may be rounded to any
   // sign.
-  const std::vector<int> parts = connected_parts(joints(), pairs_);
+  const std::vector<int> parts = linalg::connected_parts(joints(), pairs_);
   const auto loose = std::find_if(parts.begin(), parts.end(), [](int part) { return part != 0; });
   if (loose != parts.end()) {
     throw UnsupportedJoint(static_cast<int>(loose - parts.begin()),
@@ -66,7 +66,7 @@ MeasuredTruss::Fit MeasuredTruss::fit(Kernel kernel) {
   }
   std::vector<bool> held(about_.size(), false);
   held[0] = true;
-  TrussSystem& K = system_.emplace(held, pairs_, dissection_order(about_, pairs_), kernel);
+  TrussSystem& K = system_.emplace(held, pairs_, linalg::dissection_order(about_, pairs_), kernel);
   std::vector<Vector2> forces(about_.size(), Vector2::Zero());
   for (int bar = 0; bar < bars(); ++bar) {
     const auto [i, j] = pairs_[idx(bar)];
@@ -95,4 +95,4 @@ std::vector<Matrix2> MeasuredTruss::covariances() const {
   return system_->flexibilities();
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::truss

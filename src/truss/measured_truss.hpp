@@ -21,7 +21,7 @@
 #include <optional>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::truss {
 
 class MeasuredTruss {
  public:
@@ -39,7 +39,7 @@ class MeasuredTruss {
   void add(int i, int j, const Vector2& displacement, const Matrix2& information);
 
   /// Throws UnsupportedJoint where a joint is tied to nothing.
-  [[nodiscard]] Fit fit(Kernel kernel = Kernel::frontal);
+  [[nodiscard]] Fit fit(linalg::Kernel kernel = linalg::Kernel::frontal);
 
   /// Covariances of all joints, m^2, zero for the first: those of the last fit. Throws
   /// std::logic_error without one or if measurements were added since.
@@ -60,11 +60,11 @@ class MeasuredTruss {
   int bar_between(int low, int high);
 
   std::vector<Vector2> about_;
-  std::vector<int> bars_at_;     ///< per joint: the last bar of which it is the lower end
-  std::vector<NodePair> pairs_;  ///< per bar: its joints, the lower first
-  std::vector<Sums> bars_;       ///< displacements from the lower joint to the higher
+  std::vector<int> bars_at_;             ///< per joint: the last bar of which it is the lower end
+  std::vector<linalg::NodePair> pairs_;  ///< per bar: its joints, the lower first
+  std::vector<Sums> bars_;               ///< displacements from the lower joint to the higher
   long measurements_ = 0;
   std::optional<TrussSystem> system_;  ///< of the last fit
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::truss

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::truss {
 namespace {
 
 constexpr double kUnheld = 1e-13;  // share of its stiffness that an unknown keeps when held
@@ -72,7 +72,7 @@ void Relaxation::order_blocks(const ElasticTruss& truss, const std::vector<FreeJ
   }
   Matrix2 spread = Matrix2::Zero();
   for (const Vector2& at : centre) spread += (at - mean) * (at - mean).transpose();
-  const Vector2 axis = planar_modes(spread).eigenvectors.col(1);
+  const Vector2 axis = linalg::planar_modes(spread).eigenvectors.col(1);
   std::vector<std::pair<double, int>> along;
   along.reserve(idx(blocks));
   for (int b = 0; b < blocks; ++b) along.emplace_back(axis.dot(centre[idx(b)] - mean), b);
@@ -224,4 +224,4 @@ bool Relaxation::step(ElasticTruss& truss, const std::vector<FreeJoint>& free, i
   return false;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::truss

@@ -24,7 +24,7 @@
 
 #include <Eigen/Core>
 
-namespace trussmap {
+namespace trussmap::truss {
 
 struct FreeJoint {
   int joint = -1;
@@ -59,9 +59,9 @@ class Relaxation {
   bool linear_ = true;         ///< all of them are bars
   std::vector<int> rank_;      ///< per block: its place in the system
   int band_ = 0;               ///< of blocks
-  BandMatrix K_;
+  linalg::BandMatrix K_;
   Eigen::VectorXd f_;
   std::vector<Vector2> before_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::truss

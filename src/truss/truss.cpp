@@ -34,16 +34,16 @@ void check_bars(int joints, const std::vector<Bar>& bars) {
   }
 }
 
-std::vector<NodePair> ends_of(const std::vector<Bar>& bars) {
-  std::vector<NodePair> ends;
+std::vector<linalg::NodePair> ends_of(const std::vector<Bar>& bars) {
+  std::vector<linalg::NodePair> ends;
   ends.reserve(bars.size());
   for (const Bar& bar : bars) ends.push_back({bar.i, bar.j});
   return ends;
 }
 
-void require_supports(int joints, const std::vector<NodePair>& ends,
+void require_supports(int joints, const std::vector<linalg::NodePair>& ends,
                       const std::vector<Support>& supports) {
-  const std::vector<int> part = connected_parts(joints, ends);
+  const std::vector<int> part = linalg::connected_parts(joints, ends);
   std::vector<bool> held(idx(joints), false);
   for (const Support& support : supports) {
     held[idx(part[idx(support.joint)])] = true;
@@ -103,12 +103,13 @@ Deflection solve_truss(int joints, const std::vector<Bar>& bars,
     imposed[joint] = support.displacement;
   }
   const std::vector<Vector2> forces = summed(joints, loads);
-  const std::vector<NodePair> ends = ends_of(bars);
+  const std::vector<linalg::NodePair> ends = ends_of(bars);
   require_supports(joints, ends, supports);
 
-  const Elimination plan = plan_elimination(joints, ends);
+  const linalg::Elimination plan = linalg::plan_elimination(joints, ends);
   const bool large = plan.multiplications >= kFrontalPays * joints;
-  TrussSystem K(held, ends, plan.order, large ? Kernel::frontal : Kernel::cholmod);
+  truss::TrussSystem K(held, ends, plan.order,
+                       large ? linalg::Kernel::frontal : linalg::Kernel::cholmod);
   std::vector<Vector2> on_free = forces;
   for (std::size_t k = 0; k < bars.size(); ++k) {
     const Bar& bar = bars[k];
@@ -130,7 +131,7 @@ Deflection solve_truss(int joints, const std::vector<Bar>& bars,
 Deflection solve_floating_truss(int joints, const std::vector<Bar>& bars,
                                 const std::vector<Load>& loads) {
   check_bars(joints, bars);
-  const std::vector<int> part = connected_parts(joints, ends_of(bars));
+  const std::vector<int> part = linalg::connected_parts(joints, ends_of(bars));
   const auto part_of = [&part](std::size_t joint) { return idx(part[joint]); };
   const auto n = idx(joints);
   std::vector<Vector2> forces = summed(joints, loads);

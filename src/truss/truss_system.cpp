@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::truss {
 namespace {
 
 constexpr double kLeastCondition = 1e-14;
@@ -27,11 +27,11 @@ struct Residual {
   Eigen::VectorXd terms;
 };
 
-Residual residual_of(const SparseMatrix& lower, const Eigen::VectorXd& u,
+Residual residual_of(const linalg::SparseMatrix& lower, const Eigen::VectorXd& u,
                      const Eigen::VectorXd& f) {
   Residual residual{f, f.cwiseAbs()};
   for (Eigen::Index column = 0; column < lower.cols(); ++column) {
-    for (SparseMatrix::InnerIterator entry(lower, column); entry; ++entry) {
+    for (linalg::SparseMatrix::InnerIterator entry(lower, column); entry; ++entry) {
       const Eigen::Index row = entry.row();
       residual.value[row] -= entry.value() * u[column];
       residual.terms[row] += std::abs(entry.value() * u[column]);
@@ -49,8 +49,8 @@ bool shows_rounding(const Residual& residual) {
 
 }  // namespace
 
-TrussSystem::TrussSystem(const std::vector<bool>& held, std::vector<NodePair> ends,
-                         const std::vector<int>& order, Kernel kernel)
+TrussSystem::TrussSystem(const std::vector<bool>& held, std::vector<linalg::NodePair> ends,
+                         const std::vector<int>& order, linalg::Kernel kernel)
     : ends_(std::move(ends)), joints_(held.size()), K_(sizes_of(held), ends_, order, kernel) {
   for (std::size_t joint = 0; joint < held.size(); ++joint) {
     if (!held[joint]) free_.push_back(static_cast<int>(joint));
@@ -74,7 +74,7 @@ void TrussSystem::factorise() {
   if (K_.unknowns() == 0) return;
   try {
     K_.factorise();
-  } catch (const NotPositiveDefinite& failure) {
+  } catch (const linalg::NotPositiveDefinite& failure) {
     throw UnsupportedJoint(joint_of(failure.column()), "can still slide: its bars do not hold it");
   }
 }
@@ -108,4 +108,4 @@ std::vector<Matrix2> TrussSystem::flexibilities() const {
   return result;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::truss

@@ -18,13 +18,13 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::truss {
 
 class TrussSystem {
  public:
   /// `held`: per joint. `ends`: of each bar, its two joints. `order`: of elimination, all joints.
-  TrussSystem(const std::vector<bool>& held, std::vector<NodePair> ends,
-              const std::vector<int>& order, Kernel kernel = Kernel::frontal);
+  TrussSystem(const std::vector<bool>& held, std::vector<linalg::NodePair> ends,
+              const std::vector<int>& order, linalg::Kernel kernel = linalg::Kernel::frontal);
 
   /// Makes a bar stiffer by this much.
   void add_bar(int bar, const Matrix2& stiffness);
@@ -42,16 +42,16 @@ class TrussSystem {
   [[nodiscard]] std::vector<Matrix2> flexibilities() const;
 
   /// Lower triangle of K, and where a free joint's two unknowns begin in it.
-  [[nodiscard]] const SparseMatrix& matrix() const { return K_.matrix(); }
+  [[nodiscard]] const linalg::SparseMatrix& matrix() const { return K_.matrix(); }
   [[nodiscard]] int offset(int joint) const { return K_.offset(joint); }
 
  private:
   [[nodiscard]] int joint_of(Eigen::Index unknown) const;
 
-  std::vector<NodePair> ends_;
+  std::vector<linalg::NodePair> ends_;
   std::size_t joints_;
   std::vector<int> free_;  ///< joints that are not held
-  BlockSystem K_;
+  linalg::BlockSystem K_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::truss

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace trussmap {
+namespace trussmap::validation {
 
 double sum_in_sds(const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
@@ -33,4 +33,4 @@ double rise_in_sds(const HeldOut& before, const HeldOut& after) {
   return sum_in_sds(rises);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::validation

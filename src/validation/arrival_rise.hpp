@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::validation {
 
 /// Their sum over its standard error. Infinity of fewer than two, or of values all alike.
 [[nodiscard]] double sum_in_sds(const std::vector<double>& values);
@@ -17,4 +17,4 @@ namespace trussmap {
 /// Infinity where fewer than two are the same or all rise alike.
 [[nodiscard]] double rise_in_sds(const HeldOut& before, const HeldOut& after);
 
-}  // namespace trussmap
+}  // namespace trussmap::validation

@@ -14,11 +14,11 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::validation {
 
 class TimeBlocks {
  public:
-  TimeBlocks(const RecordingProblem& problem, int count);
+  TimeBlocks(const estimation::RecordingProblem& problem, int count);
 
   [[nodiscard]] int count() const { return count_; }
   /// The block of an instant; the first and the last one reach on.
@@ -30,7 +30,7 @@ class TimeBlocks {
 };
 
 /// Per block, offsets_of(fit) with the coefficients that it has without the block.
-[[nodiscard]] std::vector<Eigen::VectorXd> offsets_without_blocks(const FitState& fit,
+[[nodiscard]] std::vector<Eigen::VectorXd> offsets_without_blocks(const fitting::FitState& fit,
                                                                   const TimeBlocks& blocks);
 
-}  // namespace trussmap
+}  // namespace trussmap::validation

@@ -12,15 +12,15 @@
 #include <limits>
 #include <utility>
 
-namespace trussmap {
+namespace trussmap::validation {
 namespace {
 
 constexpr double kAnchored = 1.0;  // s from an end to a sighting
 
 /// Times of a session's nodes, ascending.
-std::vector<double> node_times(const FitState& fit, std::size_t session) {
+std::vector<double> node_times(const fitting::FitState& fit, std::size_t session) {
   std::vector<double> times;
-  for (const PoseNode& node : fit.problem.poses) {
+  for (const estimation::PoseNode& node : fit.problem.poses) {
     if (idx(node.session) == session) times.push_back(node.t);
   }
   return times;
@@ -32,9 +32,9 @@ bool is_anchored(const std::vector<double>& nodes, double t) {
 }
 
 /// From one pose of a path to a later one, in the axes of the first.
-Vector2 driven(const MotionRows& drive, const SessionPath& path, double from, double to) {
-  const Pose a = pose_at(drive, path, from);
-  const Pose b = pose_at(drive, path, to);
+Vector2 driven(const MotionRows& drive, const fitting::SessionPath& path, double from, double to) {
+  const Pose a = fitting::pose_at(drive, path, from);
+  const Pose b = fitting::pose_at(drive, path, to);
   return rotation(-a.heading) * (b.position() - a.position());
 }
 
@@ -64,8 +64,9 @@ std::vector<double> anchored_starts(const std::vector<double>& nodes, double hor
 
 /// Those of a session whose middle is in a block, by a path that is reckoned with the coefficients
 /// without it.
-void add_windows(const FitState& judge, std::size_t session, const std::vector<double>& nodes,
-                 const TimeBlocks& blocks, int block, const SessionPath& reckoned, double horizon,
+void add_windows(const fitting::FitState& judge, std::size_t session,
+                 const std::vector<double>& nodes, const TimeBlocks& blocks, int block,
+                 const fitting::SessionPath& reckoned, double horizon,
                  std::vector<WindowError>& windows) {
   const MotionRows& drive = judge.recordings[session].drive;
   for (const double t : anchored_starts(nodes, horizon)) {
@@ -73,7 +74,7 @@ void add_windows(const FitState& judge, std::size_t session, const std::vector<d
     if (blocks.at(static_cast<int>(session), t + 0.5 * horizon) != block) continue;
     if (!is_anchored(nodes, t + horizon)) continue;
     const auto& left_out = judge.used.left_out;
-    if (!left_out.empty() && overlaps_any({t, t + horizon}, left_out[session])) continue;
+    if (!left_out.empty() && recording::overlaps_any({t, t + horizon}, left_out[session])) continue;
     const Vector2 off = driven(drive, reckoned, t, t + horizon) -
                         driven(drive, judge.paths[session], t, t + horizon);
     windows.push_back({session, t, off.squaredNorm()});
@@ -81,18 +82,19 @@ void add_windows(const FitState& judge, std::size_t session, const std::vector<d
 }
 
 /// Of the one fit's dead reckoning by the other's path; per horizon.
-std::vector<std::vector<WindowError>> window_errors(const FitState& fit, const FitState& judge,
+std::vector<std::vector<WindowError>> window_errors(const fitting::FitState& fit,
+                                                    const fitting::FitState& judge,
                                                     const std::vector<double>& horizons) {
   constexpr int kBlocks = 5;
   const TimeBlocks blocks(judge.problem, kBlocks);
   const std::vector<Eigen::VectorXd> offsets = offsets_without_blocks(fit, blocks);
   std::vector<std::vector<WindowError>> windows(horizons.size());
   for (int block = 0; block < kBlocks; ++block) {
-    const std::vector<ClearedRecording> clear = cleared(fit, offsets[idx(block)]);
+    const std::vector<fitting::ClearedRecording> clear = fitting::cleared(fit, offsets[idx(block)]);
     for (std::size_t s = 0; s < clear.size(); ++s) {
       const std::vector<double> nodes = node_times(judge, s);
       if (nodes.empty()) continue;
-      const SessionPath reckoned = reckoned_path(clear[s], fit.model);
+      const fitting::SessionPath reckoned = fitting::reckoned_path(clear[s], fit.model);
       for (std::size_t k = 0; k < horizons.size(); ++k) {
         add_windows(judge, s, nodes, blocks, block, reckoned, horizons[k], windows[k]);
       }
@@ -109,7 +111,8 @@ double mean_square(const std::vector<WindowError>& windows) {
 
 }  // namespace
 
-std::vector<HorizonError> horizon_errors(const FitState& fit, const std::vector<double>& horizons) {
+std::vector<HorizonError> horizon_errors(const fitting::FitState& fit,
+                                         const std::vector<double>& horizons) {
   std::vector<HorizonError> errors;
   errors.reserve(horizons.size());
   for (const std::vector<WindowError>& one : window_errors(fit, fit, horizons)) {
@@ -118,12 +121,13 @@ std::vector<HorizonError> horizon_errors(const FitState& fit, const std::vector<
   return errors;
 }
 
-HorizonErrors horizon_errors(const FitState& fit) {
+HorizonErrors horizon_errors(const fitting::FitState& fit) {
   const std::vector<HorizonError> errors = horizon_errors(fit, {10.0, 30.0});
   return {errors[0], errors[1]};
 }
 
-HorizonChange horizon_change(const FitState& before, const FitState& after, double horizon) {
+HorizonChange horizon_change(const fitting::FitState& before, const fitting::FitState& after,
+                             double horizon) {
   constexpr std::size_t kTogether = 4;  // windows overlap by half, and errors last
   const auto in_time = [](const WindowError& a, const WindowError& b) {
     return std::pair(a.session, a.t) < std::pair(b.session, b.t);
@@ -148,4 +152,4 @@ HorizonChange horizon_change(const FitState& before, const FitState& after, doub
   return change;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::validation

@@ -17,7 +17,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::validation {
 
 struct HorizonError {
   double rms = 0.0;  ///< m; 0 without windows
@@ -30,9 +30,9 @@ struct HorizonErrors {
 };
 
 /// The fit has paths.
-[[nodiscard]] HorizonErrors horizon_errors(const FitState& fit);
+[[nodiscard]] HorizonErrors horizon_errors(const fitting::FitState& fit);
 /// One for each of these horizons, s.
-[[nodiscard]] std::vector<HorizonError> horizon_errors(const FitState& fit,
+[[nodiscard]] std::vector<HorizonError> horizon_errors(const fitting::FitState& fit,
                                                        const std::vector<double>& horizons);
 
 /// How another fit's dead reckoning compares.
@@ -43,7 +43,7 @@ struct HorizonChange {
 };
 
 /// Both judged by the path of the fit `after`, of the same recordings, in the same windows.
-[[nodiscard]] HorizonChange horizon_change(const FitState& before, const FitState& after,
-                                           double horizon);
+[[nodiscard]] HorizonChange horizon_change(const fitting::FitState& before,
+                                           const fitting::FitState& after, double horizon);
 
-}  // namespace trussmap
+}  // namespace trussmap::validation

@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::validation {
 namespace {
 
 constexpr double kFirstPlaceSd = 1.0;    // m: the filter's prior on its first pose
@@ -22,13 +22,13 @@ void HeldOutFilter::start(int node, const Pose& pose) {
 }
 
 FilterStep HeldOutFilter::drive(std::size_t k) {
-  const Measurement& segment = problem_.measurements[k];
-  const SegmentMotion motion = segment_motion(
-      with_effects(problem_.segments[segment.source], effects_[idx(segment.session)]));
-  Matrix4 W = segment.whitener;
+  const estimation::Measurement& segment = problem_.measurements[k];
+  const estimation::SegmentMotion motion = estimation::segment_motion(
+      estimation::with_effects(problem_.segments[segment.source], effects_[idx(segment.session)]));
+  estimation::Matrix4 W = segment.whitener;
   for (int row = segment.rows; row < 4; ++row) W(row, row) = 1.0;
-  const Matrix4 inverse = W.inverse();
-  const Matrix4 C = inverse * inverse.transpose();
+  const estimation::Matrix4 inverse = W.inverse();
+  const estimation::Matrix4 C = inverse * inverse.transpose();
   using Vector6 = Eigen::Matrix<double, 6, 1>;  // pose, displacement
   Eigen::Matrix<double, 6, 6> joint = Eigen::Matrix<double, 6, 6>::Zero();
   joint.topLeftCorner<3, 3>() = P_;
@@ -75,9 +75,10 @@ FilterStep HeldOutFilter::drive(std::size_t k) {
   return slopes;
 }
 
-MeasurementRows HeldOutFilter::rows(std::size_t k) const {
-  const Measurement& one = problem_.measurements[k];
-  return measurement_rows(problem_, one, state_, one.value, view_of(border_, offsets_, one));
+estimation::MeasurementRows HeldOutFilter::rows(std::size_t k) const {
+  const estimation::Measurement& one = problem_.measurements[k];
+  return estimation::measurement_rows(problem_, one, state_, one.value,
+                                      estimation::view_of(border_, offsets_, one));
 }
 
 bool HeldOutFilter::is_known(int node) const {
@@ -93,11 +94,11 @@ Eigen::MatrixXd HeldOutFilter::covariance(int node) const {
 }
 
 FilterStep HeldOutFilter::see(std::size_t k) {
-  const Measurement& one = problem_.measurements[k];
+  const estimation::Measurement& one = problem_.measurements[k];
   FilterStep slopes;
   slopes.measurement = static_cast<std::ptrdiff_t>(k);
   if (one.to >= 0 && !is_known(one.to)) return slopes;
-  const MeasurementRows rows = this->rows(k);
+  const estimation::MeasurementRows rows = this->rows(k);
   const Eigen::MatrixXd W = one.whitener.topLeftCorner(one.rows, one.rows);
   const Eigen::MatrixXd H = W * rows.by_from.topRows(one.rows);
   const Eigen::VectorXd error = W * rows.error.head(one.rows);
@@ -120,4 +121,4 @@ FilterStep HeldOutFilter::see(std::size_t k) {
   return slopes;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::validation

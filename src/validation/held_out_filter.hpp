@@ -11,7 +11,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::validation {
 
 /// One step of the filter, as it would move with further effects:
 ///   s' = A s + B c + L dl     s    what one unit of a coefficient moves the estimate by
@@ -29,11 +29,11 @@ struct FilterStep {
 class HeldOutFilter {
  public:
   /// Keeps references to all but the map, whose unknown landmarks and orientations are NaN.
-  HeldOutFilter(const RecordingProblem& problem, const EffectParameters& border,
-                const Eigen::VectorXd& offsets, const RecordingState& map,
-                const std::vector<Matrix2>& map_covariances,
+  HeldOutFilter(const estimation::RecordingProblem& problem,
+                const estimation::EffectParameters& border, const Eigen::VectorXd& offsets,
+                const estimation::RecordingState& map, const std::vector<Matrix2>& map_covariances,
                 const std::vector<double>& orientation_variances)
-      : effects_(summed_patterns(border, offsets, problem.sessions.size())),
+      : effects_(estimation::summed_patterns(border, offsets, problem.sessions.size())),
         problem_(problem),
         border_(border),
         offsets_(offsets),
@@ -54,20 +54,20 @@ class HeldOutFilter {
   /// A sighting of a known landmark, a yaw of one with a known orientation, or a truth row.
   FilterStep see(std::size_t measurement);
   /// What a sighting or truth row says at the present estimate, of its pose.
-  [[nodiscard]] MeasurementRows rows(std::size_t measurement) const;
+  [[nodiscard]] estimation::MeasurementRows rows(std::size_t measurement) const;
 
  private:
   [[nodiscard]] bool is_known(int node) const;
   Pose& at(int node) { return state_.poses[idx(node - problem_.landmark_count())]; }
 
-  std::vector<std::vector<DrivePattern>> effects_;  ///< of each session, together
-  const RecordingProblem& problem_;
-  const EffectParameters& border_;
+  std::vector<std::vector<effects::DrivePattern>> effects_;  ///< of each session, together
+  const estimation::RecordingProblem& problem_;
+  const estimation::EffectParameters& border_;
   const Eigen::VectorXd& offsets_;
-  RecordingState state_;
+  estimation::RecordingState state_;
   const std::vector<Matrix2>& covariances_;
   const std::vector<double>& orientation_variances_;
   Matrix3 P_ = Matrix3::Zero();
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::validation

@@ -13,6 +13,8 @@
 #include <utility>
 
 namespace trussmap {
+using namespace validation;
+
 namespace {
 
 /// Legs in times that are not to be used judge nothing: they stay legs.
@@ -30,27 +32,32 @@ void hold_out_no(const std::set<std::size_t>& numbers, std::vector<LegSpan>& leg
 }
 
 /// Which of the measurements those are that the fit leaves out.
-std::set<std::size_t> left_out_in(const RecordingProblem& problem, const FitState& fit) {
-  using Row = std::tuple<RecordingStream, int, std::size_t>;
-  const auto row_of = [](const Measurement& one) {
+std::set<std::size_t> left_out_in(const estimation::RecordingProblem& problem,
+                                  const fitting::FitState& fit) {
+  using Row = std::tuple<estimation::RecordingStream, int, std::size_t>;
+  const auto row_of = [](const estimation::Measurement& one) {
     return Row(one.kind->facts().stream, one.session, one.source);
   };
   std::set<Row> rows;
   for (const int k : fit.adjustment.left_out) rows.insert(row_of(fit.problem.measurements[idx(k)]));
   std::set<std::size_t> result;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
-    const Measurement& one = problem.measurements[k];
-    if (!is_driven(one) && rows.contains(row_of(one))) result.insert(k);
+    const estimation::Measurement& one = problem.measurements[k];
+    if (!estimation::is_driven(one) && rows.contains(row_of(one))) result.insert(k);
   }
   return result;
 }
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::validation {
+
 /// Columns over all measurements, where a fit leaves some out and legs drive through them.
 class HeldOutLegs::OwnColumns {
  public:
-  OwnColumns(TrainedModel trained, const FitState& training, const FitState& fit)
+  OwnColumns(TrainedModel trained, const fitting::FitState& training, const fitting::FitState& fit)
       : trained_(std::move(trained)),
         paths_(training.paths),
         context_(trained_.recordings, training.model.robot, paths_),
@@ -90,23 +97,24 @@ class HeldOutLegs::OwnColumns {
 
  private:
   TrainedModel trained_;
-  std::vector<SessionPath> paths_;
-  ShapeContext context_;
-  ColumnBuilder builder_;
+  std::vector<fitting::SessionPath> paths_;
+  fitting::ShapeContext context_;
+  fitting::ColumnBuilder builder_;
   std::vector<std::ptrdiff_t> rows_;  ///< of the fit's landmarks and orientations; -1: none
 };
 
-HeldOutLegs::HeldOutLegs(const std::vector<DrivenRecording>& recordings, const FitState& fit,
-                         const FitterOptions& options, const LegOptions& leg_options) {
+HeldOutLegs::HeldOutLegs(const std::vector<DrivenRecording>& recordings,
+                         const fitting::FitState& fit, const fitting::FitterOptions& options,
+                         const LegOptions& leg_options) {
   const bool all = fit.used.left_out.empty();
   std::vector<LegSpan> legs =
-      leg_spans(fit.recordings, all ? fit.problem : whole_problem(fit), leg_options);
+      leg_spans(fit.recordings, all ? fit.problem : fitting::whole_problem(fit), leg_options);
   const std::set<std::size_t> unused = passed_over(legs, fit.used.left_out);
   hold_out_no(unused, legs);
   if (std::none_of(legs.begin(), legs.end(), [](const LegSpan& leg) { return leg.held_out; })) {
     return;
   }
-  const FitState training = fit_without(legs, recordings, fit, options);
+  const fitting::FitState training = fit_without(legs, recordings, fit, options);
   TrainedModel trained = trained_model(training, recordings, options.problem);
   trained.left_out = left_out_in(trained.problem, fit);
   // Delays may have moved sightings, and so the ends of legs.
@@ -127,7 +135,7 @@ HeldOutLegs::HeldOutLegs(const std::vector<DrivenRecording>& recordings, const F
   problem_.segments = {};
   problem_.gyro_weights = {};
   int rows = 0;
-  for (const Measurement& one : problem_.measurements) {
+  for (const estimation::Measurement& one : problem_.measurements) {
     first_row_.push_back(rows);
     rows += one.rows;
   }
@@ -220,16 +228,20 @@ HeldOut HeldOutLegs::moved(const Eigen::VectorXd& change) const {
   return result;
 }
 
-bool HeldOutLegs::same_layout(const RecordingProblem& problem) const {
+bool HeldOutLegs::same_layout(const estimation::RecordingProblem& problem) const {
   const auto& ours = problem_.measurements;
   const auto& theirs = problem.measurements;
   return problem_.landmarks == problem.landmarks && problem_.oriented == problem.oriented &&
          std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end(),
-                    [](const Measurement& a, const Measurement& b) {
+                    [](const estimation::Measurement& a, const estimation::Measurement& b) {
                       return a.kind == b.kind && a.from == b.from && a.to == b.to &&
                              a.rows == b.rows;
                     });
 }
+
+}  // namespace trussmap::validation
+
+namespace trussmap {
 
 HeldOut predict_held_out(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
                          const LegOptions& legs) {

@@ -11,7 +11,7 @@
 #include <memory>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::validation {
 
 /// The held-out legs of a model, and how their predictions would move with further effects.
 class HeldOutLegs {
@@ -19,11 +19,11 @@ class HeldOutLegs {
   /// Starts from a fit of the model to all legs. Its coefficients are estimated anew without the
   /// held-out legs (those that cannot be stay as they are); legs to landmarks that neither another
   /// leg sees nor a survey knows are passed over. Throws like fit_model.
-  HeldOutLegs(const std::vector<DrivenRecording>& recordings, const FitState& fit,
-              const FitterOptions& options, const LegOptions& legs = {});
+  HeldOutLegs(const std::vector<DrivenRecording>& recordings, const fitting::FitState& fit,
+              const fitting::FitterOptions& options, const LegOptions& legs = {});
   HeldOutLegs(const std::vector<DrivenRecording>& recordings, const ModelFit& fit,
               const LegOptions& legs)
-      : HeldOutLegs(recordings, *fit.state, fitter_options(fit.options), legs) {}
+      : HeldOutLegs(recordings, *fit.state, fitting::fitter_options(fit.options), legs) {}
 
   [[nodiscard]] HeldOut metrics() const { return moved(Eigen::VectorXd()); }
 
@@ -41,11 +41,11 @@ class HeldOutLegs {
  private:
   class OwnColumns;
 
-  [[nodiscard]] bool same_layout(const RecordingProblem& problem) const;
+  [[nodiscard]] bool same_layout(const estimation::RecordingProblem& problem) const;
   [[nodiscard]] Eigen::MatrixXd slopes(const Eigen::MatrixXd& columns,
                                        const Eigen::MatrixXd& landmarks) const;
 
-  RecordingProblem problem_;
+  estimation::RecordingProblem problem_;
   bool has_slopes_ = false;
   std::shared_ptr<OwnColumns> own_;  ///< where the fit has not all measurements that legs pass
   std::vector<int> first_row_;       ///< of each measurement
@@ -58,4 +58,4 @@ class HeldOutLegs {
   return metrics;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::validation

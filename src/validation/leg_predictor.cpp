@@ -12,7 +12,7 @@
 
 #include <Eigen/LU>
 
-namespace trussmap {
+namespace trussmap::validation {
 namespace {
 
 constexpr double kLeastChord = 0.1;  // m
@@ -23,8 +23,8 @@ struct KnownMap {
   std::vector<Matrix2> covariances;
 };
 
-KnownMap known_map(const RecordingProblem& problem, const FitState& training, bool survey,
-                   const std::vector<DrivenRecording>& recordings) {
+KnownMap known_map(const estimation::RecordingProblem& problem, const fitting::FitState& training,
+                   bool survey, const std::vector<DrivenRecording>& recordings) {
   std::map<std::string, std::pair<Vector2, Matrix2>> known;
   for (const DrivenRecording& recording : recordings) {
     for (const SurveyPoint& point : recording.survey) {
@@ -48,7 +48,7 @@ KnownMap known_map(const RecordingProblem& problem, const FitState& training, bo
 }
 
 /// Orientations of a problem where the training has them, else where a survey does, else NaN.
-void know_orientations(const FitState& training, bool survey,
+void know_orientations(const fitting::FitState& training, bool survey,
                        const std::vector<DrivenRecording>& recordings, TrainedModel& result) {
   std::map<std::string, std::pair<double, double>> known;  // rad, rad^2
   const double surveyed = std::pow(training.model.noise.yaw, 2);
@@ -57,7 +57,7 @@ void know_orientations(const FitState& training, bool survey,
       if (survey && !std::isnan(point.heading)) known[point.landmark] = {point.heading, surveyed};
     }
   }
-  const RecordingAdjustment& fit = training.adjustment;
+  const estimation::RecordingAdjustment& fit = training.adjustment;
   for (std::size_t k = 0; k < training.problem.oriented.size(); ++k) {
     if (std::isnan(fit.orientation_sds[k])) continue;
     known[training.problem.landmarks[idx(training.problem.oriented[k])]] = {
@@ -71,22 +71,24 @@ void know_orientations(const FitState& training, bool survey,
   }
 }
 
-std::string landmark_of(const RecordingProblem& problem, const Measurement& one) {
+std::string landmark_of(const estimation::RecordingProblem& problem,
+                        const estimation::Measurement& one) {
   return one.to < 0 ? std::string() : problem.landmarks[idx(one.to)];
 }
 
 }  // namespace
 
-TrainedModel trained_model(const FitState& training, const std::vector<DrivenRecording>& recordings,
-                           const ProblemOptions& options) {
+TrainedModel trained_model(const fitting::FitState& training,
+                           const std::vector<DrivenRecording>& recordings,
+                           const estimation::ProblemOptions& options) {
   TrainedModel result;
-  ProblemOptions all = options;
+  estimation::ProblemOptions all = options;
   all.left_out.clear();
   result.recordings = training.recordings;
-  result.problem = make_problem(training.recordings, training.model, all);
-  const ShapeContext context(training.recordings, training.model.robot, training.paths);
-  result.effects = effect_columns(training.model.effects, context).border;
-  result.offsets = offsets_of(training);
+  result.problem = estimation::make_problem(training.recordings, training.model, all);
+  const fitting::ShapeContext context(training.recordings, training.model.robot, training.paths);
+  result.effects = fitting::effect_columns(training.model.effects, context).border;
+  result.offsets = fitting::offsets_of(training);
   for (std::size_t k = 0; k < result.effects.size(); ++k) {
     result.offsets[static_cast<Eigen::Index>(k)] +=
         training.columns.border[k].reference - result.effects[k].reference;
@@ -95,10 +97,10 @@ TrainedModel trained_model(const FitState& training, const std::vector<DrivenRec
   result.state.landmarks = std::move(map.places);
   result.covariances = std::move(map.covariances);
   know_orientations(training, options.survey, recordings, result);
-  for (const PoseNode& node : result.problem.poses) {
+  for (const estimation::PoseNode& node : result.problem.poses) {
     const std::size_t session = idx(node.session);
     result.state.poses.push_back(
-        pose_at(training.recordings[session].drive, training.paths[session], node.t));
+        fitting::pose_at(training.recordings[session].drive, training.paths[session], node.t));
   }
   return result;
 }
@@ -111,13 +113,13 @@ LegPredictor::LegPredictor(const TrainedModel& trained, const std::vector<LegSpa
       filter_(trained.problem, trained.effects, trained.offsets, trained.state, trained.covariances,
               trained.orientation_variances) {
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-    const Measurement& one = problem_.measurements[k];
+    const estimation::Measurement& one = problem_.measurements[k];
     // What lies ahead is not known yet, and a loop ties it to what lies behind.
-    if (one.session < 0 || is_tie(one)) continue;
+    if (one.session < 0 || estimation::is_tie(one)) continue;
     PoseEvents& here = events_[idx(one.from - problem_.landmark_count())];
-    if (is_segment(one)) {
+    if (estimation::is_segment(one)) {
       here.segment = static_cast<int>(k);
-    } else if (!is_driven(one)) {
+    } else if (!estimation::is_driven(one)) {
       here.views.push_back(k);
     }
   }
@@ -153,7 +155,7 @@ void LegPredictor::pass_over_misread() {
 
 bool LegPredictor::is_misread(std::size_t measurement, const Vector2& seen_at) const {
   constexpr double kNearer = 0.25;  // of how far its own landmark is
-  const Measurement& one = problem_.measurements[measurement];
+  const estimation::Measurement& one = problem_.measurements[measurement];
   if (one.to < 0 || !trained_.left_out.contains(measurement)) return false;
   const double near = kNearer * (seen_at - true_place(one)).norm();
   return std::ranges::any_of(trained_.state.landmarks, [&](const Vector2& place) {
@@ -168,21 +170,21 @@ void LegPredictor::begin_session(std::size_t pose) {
   steps_.push_back(fresh);
 }
 
-Vector2 LegPredictor::true_place(const Measurement& measurement) const {
+Vector2 LegPredictor::true_place(const estimation::Measurement& measurement) const {
   return measurement.to < 0 ? Vector2(measurement.value.head<2>())
                             : trained_.state.landmarks[idx(measurement.to)];
 }
 
 std::optional<Vector2> LegPredictor::seen_by(std::size_t measurement,
                                              const HeldOutFilter& filter) const {
-  const Measurement& one = problem_.measurements[measurement];
+  const estimation::Measurement& one = problem_.measurements[measurement];
   return one.kind->seen_from(one, filter.pose(one.from),
-                             view_of(trained_.effects, trained_.offsets, one));
+                             estimation::view_of(trained_.effects, trained_.offsets, one));
 }
 
 std::optional<PredictedLeg> LegPredictor::predicted(std::size_t k) const {
-  const Measurement& from = problem_.measurements[legs_[k].from];
-  const Measurement& to = problem_.measurements[legs_[k].to];
+  const estimation::Measurement& from = problem_.measurements[legs_[k].from];
+  const estimation::Measurement& to = problem_.measurements[legs_[k].to];
   const Vector2 target = true_place(to);
   if (std::isnan(target.x())) return std::nullopt;
   HeldOutFilter ahead = filter_;
@@ -225,12 +227,12 @@ double LegPredictor::expected_error(const LegEnd& end, const HeldOutFilter& filt
 }
 
 LegEnd LegPredictor::end_of(std::size_t measurement, const HeldOutFilter& filter) const {
-  const Measurement& one = problem_.measurements[measurement];
+  const estimation::Measurement& one = problem_.measurements[measurement];
   const Pose& pose = filter.pose(one.from);
-  const ViewPattern view = view_of(trained_.effects, trained_.offsets, one);
-  const MeasurementRows rows = filter.rows(measurement);
+  const effects::ViewPattern view = estimation::view_of(trained_.effects, trained_.offsets, one);
+  const estimation::MeasurementRows rows = filter.rows(measurement);
   const Eigen::Matrix<double, 2, 4> T = one.kind->seen_by_rows(one, pose, view);
-  Matrix4 W = one.whitener;
+  estimation::Matrix4 W = one.whitener;
   for (int row = one.rows; row < 4; ++row) W(row, row) = 1.0;
   LegEnd end;
   end.measurement = measurement;
@@ -241,4 +243,4 @@ LegEnd LegPredictor::end_of(std::size_t measurement, const HeldOutFilter& filter
   return end;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::validation

@@ -17,24 +17,24 @@
 #include <set>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::validation {
 
 /// All measurements of all legs, by the model and the map of a fit to some of them (the training).
 struct TrainedModel {
   std::vector<DrivenRecording> recordings;  ///< moved back by the training's delays
-  RecordingProblem problem;
-  EffectParameters effects;
+  estimation::RecordingProblem problem;
+  estimation::EffectParameters effects;
   Eigen::VectorXd offsets;           ///< of the effects' coefficients from their references
-  RecordingState state;              ///< landmarks and orientations that are not known: NaN
+  estimation::RecordingState state;  ///< landmarks and orientations that are not known: NaN
   std::vector<Matrix2> covariances;  ///< of the landmarks, m^2
   std::vector<double> orientation_variances;  ///< rad^2
   std::set<std::size_t> left_out;             ///< measurements that the fit to all leaves out
 };
 
 /// Landmarks that the training has not are where a survey in use has them.
-[[nodiscard]] TrainedModel trained_model(const FitState& training,
+[[nodiscard]] TrainedModel trained_model(const fitting::FitState& training,
                                          const std::vector<DrivenRecording>& recordings,
-                                         const ProblemOptions& options);
+                                         const estimation::ProblemOptions& options);
 
 /// A leg's first or last measurement: how what it sees moves.
 struct LegEnd {
@@ -84,10 +84,10 @@ class LegPredictor {
   [[nodiscard]] std::optional<Vector2> seen_by(std::size_t measurement,
                                                const HeldOutFilter& filter) const;
   /// NaN where it is not known.
-  [[nodiscard]] Vector2 true_place(const Measurement& measurement) const;
+  [[nodiscard]] Vector2 true_place(const estimation::Measurement& measurement) const;
 
   const TrainedModel& trained_;
-  const RecordingProblem& problem_;
+  const estimation::RecordingProblem& problem_;
   const std::vector<LegSpan>& legs_;
   std::vector<PoseEvents> events_;
   std::map<int, std::vector<std::size_t>> starting_;  ///< node -> held-out legs
@@ -96,4 +96,4 @@ class LegPredictor {
   std::vector<PredictedLeg> predicted_;
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::validation

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::validation {
 
 /// Between two measurements of the same session (sightings of the stops' references, or truth
 /// rows).
@@ -29,10 +29,11 @@ struct LegSpan {
 
 /// Legs of a problem that leaves nothing out, in order.
 [[nodiscard]] std::vector<LegSpan> leg_spans(const std::vector<DrivenRecording>& recordings,
-                                             const RecordingProblem& problem,
+                                             const estimation::RecordingProblem& problem,
                                              const LegOptions& options = {});
 
 /// Legs of all that was recorded that the fit has, between measurements of its problem.
-[[nodiscard]] std::vector<LegSpan> leg_spans(const FitState& fit, const LegOptions& options = {});
+[[nodiscard]] std::vector<LegSpan> leg_spans(const fitting::FitState& fit,
+                                             const LegOptions& options = {});
 
-}  // namespace trussmap
+}  // namespace trussmap::validation

@@ -14,8 +14,8 @@ namespace {
 /// An effect of one coefficient in its own words, else a factor.
 std::string size_text(const ChangingCoefficient& change, double value, double sd) {
   if (change.effect.coefficients.size() > 1) {
-    return fmt::format("it is {} +- {} times what it is throughout", fixed_text(value, 2),
-                       fixed_text(sd, 2));
+    return fmt::format("it is {} +- {} times what it is throughout", text::fixed_text(value, 2),
+                       text::fixed_text(sd, 2));
   }
   Effect sized = change.effect;
   sized.coefficients = {value};
@@ -25,9 +25,10 @@ std::string size_text(const ChangingCoefficient& change, double value, double sd
 std::string step_text(const ChangingCoefficient& change) {
   const std::string of = change.session_name.empty() ? std::string() : " of " + change.session_name;
   const std::string when =
-      change.between ? "from the start" + of + " on"
-                     : fmt::format("at t = {} s{} ({} to {} s)", fixed_text(change.t, 0), of,
-                                   fixed_text(change.earliest, 0), fixed_text(change.latest, 0));
+      change.between
+          ? "from the start" + of + " on"
+          : fmt::format("at t = {} s{} ({} to {} s)", text::fixed_text(change.t, 0), of,
+                        text::fixed_text(change.earliest, 0), text::fixed_text(change.latest, 0));
   return fmt::format("{} changes {}: before, {}; after, {}", name_in_words(change.effect), when,
                      size_text(change, change.before, change.before_sd),
                      size_text(change, change.after, change.after_sd));
@@ -41,7 +42,7 @@ std::string walk_text(const ChangingCoefficient& change) {
   const CoursePart& then = rises ? *most : *least;
   const bool several = change.course.back().session > 0;
   const auto when = [several](const CoursePart& part) {
-    return fixed_text(0.5 * (part.from + part.until), 0) + " s" +
+    return text::fixed_text(0.5 * (part.from + part.until), 0) + " s" +
            (several ? fmt::format(" of recording {}", part.session + 1) : "");
   };
   return fmt::format("{} wanders while driving: at t = {}, {}; at t = {}, {}",

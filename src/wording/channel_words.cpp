@@ -9,21 +9,21 @@
 
 #include <fmt/format.h>
 
-namespace trussmap {
+namespace trussmap::wording {
 
 Scale scale_of(Channel channel) {
   const std::string_view unit = facts_of(channel).unit;
-  if (unit == "rad/s") return {kDegrees * 60.0, " deg/min"};
+  if (unit == "rad/s") return {geometry::kDegrees * 60.0, " deg/min"};
   if (unit == "m") return {1e3, " mm"};
-  if (unit == "rad") return {kDegrees, " deg"};
+  if (unit == "rad") return {geometry::kDegrees, " deg"};
   if (unit == "s") return {1e3, " ms"};
   return {100.0, " %"};
 }
 
 ShownUnit shown_unit(const std::string& unit) {
   if (unit.empty()) return {100.0, "%"};
-  if (unit == "rad") return {kDegrees, "\u00b0"};
-  if (unit == "rad/s") return {kDegrees, "\u00b0/s"};
+  if (unit == "rad") return {geometry::kDegrees, "\u00b0"};
+  if (unit == "rad/s") return {geometry::kDegrees, "\u00b0/s"};
   if (unit == "m") return {1000.0, "mm"};
   if (unit == "s") return {1000.0, "ms"};
   return {1.0, unit};
@@ -59,4 +59,4 @@ std::string place_text(const Vector2& place) {
   return fmt::format("x {:.1f} m, y {:.1f} m", place.x(), place.y());
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::wording

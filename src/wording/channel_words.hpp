@@ -9,7 +9,7 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::wording {
 
 /// In what a person reads a channel's g: the factor to it, and the unit in plain text.
 struct Scale {
@@ -35,4 +35,4 @@ struct ShownUnit {
 /// "x 12.3 m, y 9.8 m".
 [[nodiscard]] std::string place_text(const Vector2& place);
 
-}  // namespace trussmap
+}  // namespace trussmap::wording

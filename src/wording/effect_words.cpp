@@ -16,6 +16,8 @@
 #include <fmt/format.h>
 
 namespace trussmap {
+using namespace wording;
+
 namespace {
 
 /// "2.04 +- 0.11 %", the error with two digits.
@@ -27,7 +29,7 @@ std::string with_error(double value, double sd, const char* unit) {
 
 std::string sentence(Channel channel, double value, double sd) {
   const Scale scale = scale_of(channel);
-  const ChannelPhrase& phrase = record_of(channel).phrase;
+  const effects::ChannelPhrase& phrase = effects::record_of(channel).phrase;
   return fmt::format("{} {} {}", phrase.subject,
                      with_error(scale.factor * std::abs(value), scale.factor * sd, scale.unit),
                      value < 0.0 ? phrase.less : phrase.more);
@@ -154,7 +156,7 @@ std::optional<std::string> curve_in_words(const Effect& effect) {
     for (std::size_t j = 0; j < bell.size(); ++j) values[j] += effect.coefficients[k] * bell[j];
   }
   const Scale scale = scale_of(effect.channel);
-  const ChannelPhrase& phrase = record_of(effect.channel).phrase;
+  const effects::ChannelPhrase& phrase = effects::record_of(effect.channel).phrase;
   constexpr double kNothing = 1e-3;  // of the most
   double most = 0.0;
   for (const double value : values) most = std::max(most, std::abs(value));
@@ -183,20 +185,7 @@ struct Share {
 
 /// Of a factor 1 + g below zero, which no size of a wheel is; empty where it is one.
 std::string_view wrong_sign_in_words(Channel channel, double g) {
-  if (g >= -1.0) return "";
-  switch (channel) {
-    case Channel::turn:
-      return "the robot turns the other way round than its wheels say: left and right exchanged, "
-             "or all wheels counting backwards?";
-    case Channel::left:
-      return "the left wheel counts backwards: the sign of its ticks?";
-    case Channel::right:
-      return "the right wheel counts backwards: the sign of its ticks?";
-    case Channel::wheels:
-      return "all wheels count backwards: the sign of their ticks?";
-    default:
-      return "";
-  }
+  return g < -1.0 ? effects::record_of(channel).below_zero : std::string_view();
 }
 
 Share wheelbase_share(double turn) {
@@ -230,7 +219,7 @@ std::string size_in_words(const Effect& effect, double least, double most) {
                        two_digits(100.0 * std::abs(larger)), larger < 0.0 ? "smaller" : "larger");
   }
   const Scale scale = scale_of(channel);
-  const ChannelPhrase& phrase = record_of(channel).phrase;
+  const effects::ChannelPhrase& phrase = effects::record_of(channel).phrase;
   std::string subject(phrase.subject);
   if (is_plain_factor(effect) && channel == Channel::difference) {
     const double larger = right_wheel_share(extreme).larger;
@@ -291,14 +280,14 @@ std::string in_words(const Effect& effect, const std::vector<double>& sd) {
             ? std::hypot(effect.coefficients[0] * sd[0], effect.coefficients[1] * sd[1]) / size
             : 0.0;
     const Scale scale = scale_of(channel);
-    const ChannelPhrase& phrase = record_of(channel).phrase;
+    const effects::ChannelPhrase& phrase = effects::record_of(channel).phrase;
     return fmt::format(
         "{} up to {} {}, and as much the other way, as {} goes round", phrase.subject,
         with_error(scale.factor * size, scale.factor * error, scale.unit), phrase.more, *round);
   }
   if (const std::optional<std::string> curve = curve_in_words(effect)) return *curve;
   std::string text;
-  const std::optional<Vector2> place = place_of(effect);
+  const std::optional<Vector2> place = effects::place_of(effect);
   for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
     const Shape& shape = effect.shape[k % effect.shape.size()];
     text += text.empty() ? "" : "; ";

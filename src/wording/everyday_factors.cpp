@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::wording {
 namespace {
 
 struct KnownFactor {
@@ -36,8 +36,8 @@ const std::vector<KnownFactor>& factors_of_turn() {
   static const std::vector<KnownFactor> factors{
       {2.0, "half of what is stated: a distance between the wheels counted twice, or a gear?"},
       {0.5, "twice what is stated: the distance from the middle to a wheel?"},
-      {kDegrees, "degrees for radians?"},
-      {1.0 / kDegrees, "radians for degrees?"}};
+      {geometry::kDegrees, "degrees for radians?"},
+      {1.0 / geometry::kDegrees, "radians for degrees?"}};
   return factors;
 }
 
@@ -58,4 +58,4 @@ std::string everyday_factor_in_words(Channel channel, double g, double sd) {
   return "";
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::wording

@@ -8,10 +8,10 @@
 
 #include <string>
 
-namespace trussmap {
+namespace trussmap::wording {
 
 /// " (twice: a radius taken for a diameter, or a gear?)", of a channel with the shape 1 and
 /// the coefficient g, with its standard error; empty where the factor is no such one.
 [[nodiscard]] std::string everyday_factor_in_words(Channel channel, double g, double sd);
 
-}  // namespace trussmap
+}  // namespace trussmap::wording

@@ -30,7 +30,7 @@ std::string goes_with(const Effect& effect) {
   std::vector<std::string> names;
   for (const Shape& shape : effect.shape) {
     for (const std::string& name : shape.variables()) {
-      const std::string words = variable_in_words(name);
+      const std::string words = wording::variable_in_words(name);
       if (std::find(names.begin(), names.end(), words) == names.end()) names.push_back(words);
     }
   }
@@ -42,13 +42,13 @@ std::string goes_with(const Effect& effect) {
 }
 
 const char* where_to_look(Channel channel) {
-  switch (acts_on(channel)) {
-    case ActsOn::readings:
+  switch (effects::acts_on(channel)) {
+    case effects::ActsOn::readings:
       return "Look at the compass, at what is magnetic or switched near it, and at its time "
              "stamps.";
-    case ActsOn::views:
+    case effects::ActsOn::views:
       return "Look at how the sensor is mounted, at its scale, and at its clock.";
-    case ActsOn::drives:
+    case effects::ActsOn::drives:
       break;
   }
   return channel == Channel::gyro || channel == Channel::gyro_scale
@@ -74,9 +74,9 @@ Explanation of_own(const Effect& effect) {
 }  // namespace
 
 Explanation explanation_of(const Effect& effect) {
-  const CatalogueRecord* record = find_record(effect.name);
+  const effects::CatalogueRecord* record = effects::find_record(effect.name);
   if (record == nullptr) return of_own(effect);
-  const ExplanationText& known = record->explanation;
+  const effects::ExplanationText& known = record->explanation;
   const std::string covariate = goes_with(effect);
   const auto against = [&known](double value) { return value * known.sign < 0.0; };
   if (!effect.coefficients.empty() && std::ranges::all_of(effect.coefficients, against)) {
@@ -85,8 +85,12 @@ Explanation explanation_of(const Effect& effect) {
   return {with(known.does, covariate), with(known.look, covariate), with(known.drive, covariate)};
 }
 
+}  // namespace trussmap
+
+namespace trussmap::wording {
+
 const CatalogueEntry* usual_entry(const Effect& effect) {
   return explanation_of(effect).unusual ? nullptr : find_entry(effect.name);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::wording

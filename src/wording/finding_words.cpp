@@ -28,17 +28,21 @@ constexpr std::array kLaws{
              "the right wheel's noise is {:.2g} m per root metre, not {:.2g}", 1.0, true},
     LawWords{"per second", "each second adds {:.2g} mm of noise to each wheel, also at rest", 1e3},
     LawWords{"per second, heading", "each second adds {:.2g} deg of heading noise, also at rest",
-             kDegrees},
+             geometry::kDegrees},
     LawWords{"per second, travel", "each second adds {:.2g} mm of travel noise, also at rest", 1e3},
-    LawWords{"per radian turned", "each radian turned adds {:.2g} deg of heading noise", kDegrees},
+    LawWords{"per radian turned", "each radian turned adds {:.2g} deg of heading noise",
+             geometry::kDegrees},
     LawWords{"per start", "each start adds {:.2g} mm of travel noise", 1e3},
-    LawWords{"per spin", "each turn on the spot adds {:.2g} deg of heading noise", kDegrees},
-    LawWords{"compass", "a compass reading is good to {:.2g} deg, not {:.2g}", kDegrees, true},
+    LawWords{"per spin", "each turn on the spot adds {:.2g} deg of heading noise",
+             geometry::kDegrees},
+    LawWords{"compass", "a compass reading is good to {:.2g} deg, not {:.2g}", geometry::kDegrees,
+             true},
     LawWords{"sighting", "the robot stands on its landmarks to {:.2g} mm, not {:.2g}", 1e3, true},
     LawWords{"range", "a range is good to {:.2g} mm, not {:.2g}", 1e3, true},
     LawWords{"fix", "a fix is good to {:.2g} cm, not {:.2g}", 100.0, true},
-    LawWords{"bearing", "a bearing is good to {:.2g} deg, not {:.2g}", kDegrees, true},
-    LawWords{"yaw", "the yaw of a landmark is good to {:.2g} deg, not {:.2g}", kDegrees, true},
+    LawWords{"bearing", "a bearing is good to {:.2g} deg, not {:.2g}", geometry::kDegrees, true},
+    LawWords{"yaw", "the yaw of a landmark is good to {:.2g} deg, not {:.2g}", geometry::kDegrees,
+             true},
     LawWords{"heavy tails", "a few errors are far larger than the rest"},
     LawWords{"autocorrelation", "each drive errs much as the one before it did"},
 };
@@ -64,7 +68,7 @@ std::string session_off(const EventTest& event) {
       fmt::format("session {} is not like the others: there travel is {:+.2g} %, turns {:+.2g} %,",
                   event.name, 100.0 * event.size[0], 100.0 * event.size[1]);
   if (!std::isnan(event.size[2])) {
-    words += fmt::format(" the compass {:+.2g} deg,", kDegrees * event.size[2]);
+    words += fmt::format(" the compass {:+.2g} deg,", geometry::kDegrees * event.size[2]);
   }
   return words + fmt::format(" sightings {:+.2g} ms late", 1e3 * event.size[3]);
 }
@@ -91,16 +95,16 @@ std::string in_words(const EventTest& event) {
       return fmt::format(
           "something moved the robot by {:.1f} cm ahead, {:.1f} cm to the left and {:.1f} deg that "
           "its wheels do not say, in the leg {}",
-          cm(size[0]), cm(size[1]), kDegrees * size[2], event.name);
+          cm(size[0]), cm(size[1]), geometry::kDegrees * size[2], event.name);
     case EventChange::position_off:
       return fmt::format("{} is off by {:.1f} cm", event.name, cm(std::hypot(size[0], size[1])));
     case EventChange::range_off:
       return fmt::format("{} is off by {:.1f} cm", event.name, cm(size[0]));
     case EventChange::bearing_off:
-      return fmt::format("{} is off by {:.1f} deg", event.name, kDegrees * size[0]);
+      return fmt::format("{} is off by {:.1f} deg", event.name, geometry::kDegrees * size[0]);
     case EventChange::view_off:
       return fmt::format("{} is off by {:.1f} cm and {:.1f} deg", event.name, cm(size[0]),
-                         kDegrees * size[1]);
+                         geometry::kDegrees * size[1]);
     case EventChange::survey_off:
       return fmt::format(
           "landmark {} is not where the survey has it, but {:.1f} cm along x and {:.1f} cm along y "

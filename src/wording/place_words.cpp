@@ -26,7 +26,7 @@ std::string field_in_words(Channel channel) {
 std::string in_words(const FieldOfPlaces& field) {
   const std::string unit(facts_of(field.channel).unit);
   std::string text = fmt::format("{}: sd {}, over about {:.1f} m", field_in_words(field.channel),
-                                 shown(field.size, unit), field.length);
+                                 wording::shown(field.size, unit), field.length);
   for (std::size_t k = 0; k < field.rivals.size(); ++k) {
     text += (k == 0 ? "; or it is " : " or ") + std::string(what_differs(field.rivals[k]));
   }

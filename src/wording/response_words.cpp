@@ -7,11 +7,13 @@
 #include "wording/channel_words.hpp"
 
 namespace trussmap {
+using namespace wording;
+
 namespace {
 
 ShownUnit unit_of(const std::string& variable) {
-  if (variable == "heading") return {kDegrees, "\u00b0"};
-  if (variable == "turn_rate") return {kDegrees, "\u00b0/s"};
+  if (variable == "heading") return {geometry::kDegrees, "\u00b0"};
+  if (variable == "turn_rate") return {geometry::kDegrees, "\u00b0/s"};
   if (variable == "speed") return {1.0, "m/s"};
   if (variable == "acceleration") return {1.0, "m/s\u00b2"};
   if (variable == "t") return {1.0, "s"};
@@ -29,7 +31,7 @@ ResponseAxes axes_of(const Response& response) {
   const std::string name = response.variable == kPlace ? "distance from its place"
                                                        : variable_in_words(response.variable);
   return {across.name.empty() ? name : name + " [" + across.name + "]", across.factor,
-          std::string(record_of(response.channel).axis) + " [" + up.name + "]", up.factor};
+          std::string(effects::record_of(response.channel).axis) + " [" + up.name + "]", up.factor};
 }
 
 std::string name_in_words(const TrendEvidence& trend) {

@@ -15,7 +15,7 @@ namespace {
 
 std::string beyond_noise(double chi2, int dof) {
   return fmt::format("errors are {} times what the model's noise allows",
-                     times_text(std::sqrt(chi2 / std::max(1, dof))));
+                     text::times_text(std::sqrt(chi2 / std::max(1, dof))));
 }
 
 /// A verdict, and by how many of the sightings it is one.

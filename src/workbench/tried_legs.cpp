@@ -16,8 +16,8 @@
 namespace trussmap {
 namespace {
 
-std::string landmark_of(const RecordingProblem& problem, std::size_t measurement) {
-  const Measurement& one = problem.measurements[measurement];
+std::string landmark_of(const estimation::RecordingProblem& problem, std::size_t measurement) {
+  const estimation::Measurement& one = problem.measurements[measurement];
   return one.to < 0 ? std::string() : problem.landmarks[idx(one.to)];
 }
 
@@ -39,15 +39,20 @@ bool meets(const Vector2& from, const Vector2& to, const Vector2& low, const Vec
 
 }  // namespace
 
+}  // namespace trussmap
+
+namespace trussmap::workbench {
+
 std::vector<TriedLeg> tried_legs(const std::vector<DrivenRecording>& recordings,
-                                 const FitState& fit, const LegOptions& options) {
-  const RecordingProblem whole = fit.used.left_out.empty() ? fit.problem : whole_problem(fit);
+                                 const fitting::FitState& fit, const LegOptions& options) {
+  const estimation::RecordingProblem whole =
+      fit.used.left_out.empty() ? fit.problem : fitting::whole_problem(fit);
   std::vector<std::vector<TimeSpan>> spans(recordings.size());
   std::vector<TriedLeg> legs;
-  for (const LegSpan& span : leg_spans(fit.recordings, whole, options)) {
+  for (const validation::LegSpan& span : validation::leg_spans(fit.recordings, whole, options)) {
     const std::size_t session = idx(span.session);
     const auto place = [&](double t) {
-      return pose_at(fit.recordings[session].drive, fit.paths[session], t).position();
+      return fitting::pose_at(fit.recordings[session].drive, fit.paths[session], t).position();
     };
     TriedLeg leg;
     leg.number = span.number;
@@ -57,33 +62,34 @@ std::vector<TriedLeg> tried_legs(const std::vector<DrivenRecording>& recordings,
     leg.begin = place(span.time.from);
     leg.end = place(span.time.to);
     leg.held_out = span.held_out;
-    leg.excluded =
-        !fit.used.left_out.empty() && overlaps_any(span.time, fit.used.left_out[session]);
+    leg.excluded = !fit.used.left_out.empty() &&
+                   recording::overlaps_any(span.time, fit.used.left_out[session]);
     spans[session].push_back(span.time);
     legs.push_back(std::move(leg));
   }
-  spans = recorded_spans(std::move(spans), recordings, fit);
+  spans = validation::recorded_spans(std::move(spans), recordings, fit);
   std::vector<std::size_t> next(spans.size(), 0);
   for (TriedLeg& leg : legs) leg.time = spans[leg.recording][next[leg.recording]++];
   return legs;
 }
 
 Eigen::VectorXd rows_of_legs(const std::vector<std::size_t>& numbers,
-                             const std::vector<LegSpan>& legs, const FitState& fit,
-                             const RecordingSystem& system) {
+                             const std::vector<validation::LegSpan>& legs,
+                             const fitting::FitState& fit,
+                             const estimation::RecordingSystem& system) {
   if (numbers.empty()) return {};
   const std::set<std::size_t> wanted(numbers.begin(), numbers.end());
   std::vector<std::vector<TimeSpan>> spans(fit.recordings.size());
-  for (const LegSpan& leg : legs) {
+  for (const validation::LegSpan& leg : legs) {
     if (wanted.contains(leg.number)) spans[idx(leg.session)].push_back(leg.time);
   }
-  for (std::vector<TimeSpan>& one : spans) one = merged(std::move(one));
+  for (std::vector<TimeSpan>& one : spans) one = recording::merged(std::move(one));
   Eigen::VectorXd rows = Eigen::VectorXd::Zero(system.rows());
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
-    const Measurement& one = fit.problem.measurements[k];
+    const estimation::Measurement& one = fit.problem.measurements[k];
     if (one.session < 0) continue;
     const double from = fit.problem.time_of(one.from);
-    const double to = is_segment(one) ? fit.problem.time_of(one.to) : from;
+    const double to = estimation::is_segment(one) ? fit.problem.time_of(one.to) : from;
     const std::vector<TimeSpan>& here = spans[idx(one.session)];
     const bool within = std::any_of(here.begin(), here.end(), [&](const TimeSpan& span) {
       return span.from <= from && to <= span.to;
@@ -92,6 +98,10 @@ Eigen::VectorXd rows_of_legs(const std::vector<std::size_t>& numbers,
   }
   return rows;
 }
+
+}  // namespace trussmap::workbench
+
+namespace trussmap {
 
 std::vector<std::size_t> legs_in_area(const TriedModel& model, const Vector2& corner,
                                       const Vector2& opposite) {
@@ -105,7 +115,7 @@ std::vector<std::size_t> legs_in_area(const TriedModel& model, const Vector2& co
 }
 
 std::vector<std::size_t> legs_in_time(const TriedModel& model, const TimeSpan& elapsed) {
-  const std::vector<double> shifts = elapsed_shifts(model.recordings());
+  const std::vector<double> shifts = drive::elapsed_shifts(model.recordings());
   std::vector<std::size_t> numbers;
   for (const TriedLeg& leg : model.legs()) {
     const double shift = shifts[leg.recording];

@@ -11,17 +11,19 @@
 
 #include <vector>
 
-namespace trussmap {
+namespace trussmap::workbench {
 
 /// All legs, by their numbers. `recordings` as they were before delays were taken out; the fit has
 /// paths.
 [[nodiscard]] std::vector<TriedLeg> tried_legs(const std::vector<DrivenRecording>& recordings,
-                                               const FitState& fit, const LegOptions& options);
+                                               const fitting::FitState& fit,
+                                               const LegOptions& options);
 
 /// Of the system's rows 1 for what was driven and sighted on those legs of a fit (leg_spans) that
 /// have one of these numbers, 0 for all else; empty (all rows) without numbers.
 [[nodiscard]] Eigen::VectorXd rows_of_legs(const std::vector<std::size_t>& numbers,
-                                           const std::vector<LegSpan>& legs, const FitState& fit,
-                                           const RecordingSystem& system);
+                                           const std::vector<validation::LegSpan>& legs,
+                                           const fitting::FitState& fit,
+                                           const estimation::RecordingSystem& system);
 
-}  // namespace trussmap
+}  // namespace trussmap::workbench

@@ -24,8 +24,8 @@ namespace trussmap {
 namespace {
 
 /// Metrics of the held-out legs with an effect as its score has it.
-std::optional<HeldOutMetrics> predicted_by(const HeldOutLegs& legs, const Effect& effect,
-                                           const Score& score) {
+std::optional<HeldOutMetrics> predicted_by(const validation::HeldOutLegs& legs,
+                                           const Effect& effect, const criticism::Score& score) {
   if (score.dof == 0 || !legs.has_slopes()) return std::nullopt;
   const Eigen::VectorXd moved =
       legs.slopes(effect, score.columns, score.landmarks) *
@@ -38,15 +38,15 @@ ModelFit judged_fit(const Diagnosis& diagnosis, const ModelFit& fit) {
   return diagnosis.under ? diagnosis.under->fit : fit;
 }
 
-std::string unit_of_parameter(const Candidate& candidate, std::size_t k) {
+std::string unit_of_parameter(const criticism::Candidate& candidate, std::size_t k) {
   const std::string& name = candidate.parameters[k].name;
-  if (candidate.form == Form::catalogue) {
+  if (candidate.form == criticism::Form::catalogue) {
     for (const OpenParameter& one : find_entry(candidate.effect.name)->parameters) {
       if (one.name == name) return std::string(one.unit);
     }
   }
   if (name == "x" || name == "y" || name == "r") return "m";
-  return std::string(unit_of_variable(candidate.variable));
+  return std::string(recording::unit_of_variable(candidate.variable));
 }
 
 void say(const std::function<void(TryingStage)>& progress, TryingStage stage) {
@@ -62,7 +62,7 @@ struct TriedModel::Tried {
     say(progress, TryingStage::fitting);
     const ModelFit first = fit_model(*recordings, model, options.fit);
     say(progress, TryingStage::searching);
-    run = run_diagnosis(*recordings, first, model.noise, options);
+    run = criticism::run_diagnosis(*recordings, first, model.noise, options);
     look_at(first, progress);
   }
 
@@ -72,7 +72,8 @@ struct TriedModel::Tried {
     say(progress, TryingStage::fitting);
     ModelFit first = fit_model(rows.recordings, model, options.fit);
     say(progress, TryingStage::searching);
-    JudgedRun judged = judged_run(std::move(rows), std::move(first), model.noise, options);
+    criticism::JudgedRun judged =
+        criticism::judged_run(std::move(rows), std::move(first), model.noise, options);
     run = std::move(judged.run);
     recordings =
         std::make_shared<const std::vector<DrivenRecording>>(std::move(judged.rows.recordings));
@@ -84,34 +85,34 @@ struct TriedModel::Tried {
     say(progress, TryingStage::comparing);
     tests.emplace(*fit.state);
     legs.emplace(*recordings, fit, options.legs);
-    comparison = compare(*recordings, fit, {options.fit, options.legs, options.level}, *tests,
-                         {run.result.missing, legs->metrics()});
+    comparison = criticism::compare(*recordings, fit, {options.fit, options.legs, options.level},
+                                    *tests, {run.result.missing, legs->metrics()});
     comparison.sightings = run.result.sightings;
-    sizes = sizes_of(run.result, tests->context());
+    sizes = criticism::sizes_of(run.result, tests->context());
     map = fitted_map(fit);
     budget = noise_budget(*recordings, fit.model);
-    all_legs = tried_legs(*recordings, *fit.state, options.legs);
-    spans = leg_spans(*fit.state, options.legs);
+    all_legs = workbench::tried_legs(*recordings, *fit.state, options.legs);
+    spans = validation::leg_spans(*fit.state, options.legs);
   }
 
-  [[nodiscard]] const Candidate& candidate(std::size_t finding) const {
+  [[nodiscard]] const criticism::Candidate& candidate(std::size_t finding) const {
     return run.candidates.at(finding);
   }
 
   std::shared_ptr<const std::vector<DrivenRecording>> recordings;
   DiagnoseOptions options;
-  DiagnosisRun run;
+  criticism::DiagnosisRun run;
   ModelFit fit;
   Comparison comparison;
   std::vector<FindingSize> sizes;
   FittedMap map;
   std::vector<NoiseBudget> budget;
   std::vector<TriedLeg> all_legs;
-  std::vector<LegSpan> spans;  ///< of those that the fit has
+  std::vector<validation::LegSpan> spans;  ///< of those that the fit has
   // Score tests keep what they make.
   mutable std::mutex mutex;
-  std::optional<ScoreTest> tests;
-  std::optional<HeldOutLegs> legs;
+  std::optional<criticism::ScoreTest> tests;
+  std::optional<validation::HeldOutLegs> legs;
 };
 
 TriedModel::TriedModel(std::shared_ptr<const std::vector<DrivenRecording>> recordings,
@@ -152,10 +153,10 @@ const std::vector<TriedLeg>& TriedModel::legs() const {
 }
 
 std::vector<EffectParameter> TriedModel::parameters(std::size_t finding) const {
-  const Candidate& candidate = tried_->candidate(finding);
+  const criticism::Candidate& candidate = tried_->candidate(finding);
   std::vector<EffectParameter> result;
   for (std::size_t k = 0; k < candidate.parameters.size(); ++k) {
-    const SearchRange& range = candidate.search[k];
+    const criticism::SearchRange& range = candidate.search[k];
     result.push_back({candidate.parameters[k], range.step, range.least, range.most,
                       unit_of_parameter(candidate, k)});
   }
@@ -163,13 +164,13 @@ std::vector<EffectParameter> TriedModel::parameters(std::size_t finding) const {
 }
 
 Effect TriedModel::moved(std::size_t finding, const std::vector<double>& values) const {
-  const Candidate& candidate = tried_->candidate(finding);
+  const criticism::Candidate& candidate = tried_->candidate(finding);
   if (values.size() != candidate.parameters.size()) {
     throw std::invalid_argument("effect \"" + candidate.effect.name + "\" has " +
                                 std::to_string(candidate.parameters.size()) +
                                 " values that can be moved, not " + std::to_string(values.size()));
   }
-  Effect effect = with_parameters(candidate, values).effect;
+  Effect effect = criticism::with_parameters(candidate, values).effect;
   effect.coefficients.clear();
   return effect;
 }
@@ -177,12 +178,13 @@ Effect TriedModel::moved(std::size_t finding, const std::vector<double>& values)
 std::vector<double> TriedModel::best_near(std::size_t finding, const std::vector<double>& values,
                                           std::optional<std::size_t> only) const {
   static_cast<void>(moved(finding, values));
-  Candidate candidate = tried_->candidate(finding);
+  criticism::Candidate candidate = tried_->candidate(finding);
   for (std::size_t k = 0; only && k < candidate.search.size(); ++k) {
     if (k != *only) candidate.search[k].least = candidate.search[k].most = values[k];
   }
   const std::scoped_lock lock(tried_->mutex);
-  const Candidate best = refined(*tried_->tests, with_parameters(candidate, values));
+  const criticism::Candidate best =
+      criticism::refined(*tried_->tests, criticism::with_parameters(candidate, values));
   std::vector<double> result;
   for (const ShapeParameter& one : best.parameters) result.push_back(one.value);
   return result;
@@ -190,13 +192,13 @@ std::vector<double> TriedModel::best_near(std::size_t finding, const std::vector
 
 EffectPreview TriedModel::preview(const Effect& effect, const std::vector<Effect>& rivals,
                                   const std::vector<std::size_t>& legs) const {
-  const FitState& fit = *tried_->fit.state;
+  const fitting::FitState& fit = *tried_->fit.state;
   const std::scoped_lock lock(tried_->mutex);
   std::vector<Effect> asked{effect};
   asked.insert(asked.end(), rivals.begin(), rivals.end());
-  const std::vector<Score> scores = tried_->tests->test(asked);
+  const std::vector<criticism::Score> scores = tried_->tests->test(asked);
   EffectPreview result;
-  const Score& score = scores.front();
+  const criticism::Score& score = scores.front();
   result.score = score.score;
   result.dof = score.dof;
   result.p_value = score.p_value;
@@ -206,18 +208,19 @@ EffectPreview TriedModel::preview(const Effect& effect, const std::vector<Effect
     result.rivals_predicted.push_back(predicted_by(*tried_->legs, asked[k], scores[k]));
   }
   if (!rivals.empty()) {
-    ScoreTest beside = *tried_->tests;  // what else is missing, as the diagnosis has it
+    criticism::ScoreTest beside = *tried_->tests;  // what else is missing, as the diagnosis has it
     for (const Finding* one : found_by(tried_->run.result)) {
       const auto same = [one](const Effect& other) { return other.name == one->effect.name; };
       if (std::none_of(asked.begin(), asked.end(), same)) {
         beside.condition_on(beside.columns(one->effect));
       }
     }
-    result.rivals_behind = chi2_behind(effect, rivals, beside, tried_->fit.dof);
+    result.rivals_behind = criticism::chi2_behind(effect, rivals, beside, tried_->fit.dof);
   }
   const EffectEstimate estimate{asked.front(), score.sd, {}};
-  result.evidence = seen_effect(estimate, {asked.begin() + 1, asked.end()}, fit, *tried_->tests,
-                                rows_of_legs(legs, tried_->spans, fit, tried_->tests->system()));
+  result.evidence = criticism::seen_effect(
+      estimate, {asked.begin() + 1, asked.end()}, fit, *tried_->tests,
+      workbench::rows_of_legs(legs, tried_->spans, fit, tried_->tests->system()));
   return result;
 }
 
@@ -227,18 +230,18 @@ double p_with_noise(const Diagnosis& diagnosis, std::size_t finding, double fact
   const int dof = std::max(1, diagnosis.dof - one.dof);
   const double left = std::max(0.0, diagnosis.chi2 - one.score) / dof;
   const double noise = std::max({1.0, factor * factor, left});
-  const double p = chi2_p_value(one.score / noise, one.dof);
+  const double p = statistics::chi2_p_value(one.score / noise, one.dof);
   // Never surer than the diagnosis, which knows of more than this.
   return std::clamp(p * static_cast<double>(diagnosis.tried), one.p_adjusted, 1.0);
 }
 
 EffectEvidence TriedModel::shown(std::size_t effect, const std::vector<std::size_t>& legs) const {
-  const FitState& fit = *tried_->fit.state;
+  const fitting::FitState& fit = *tried_->fit.state;
   const EffectEstimate& estimate = tried_->fit.effects.at(effect);
   const std::scoped_lock lock(tried_->mutex);
-  const ScoreTest tests = tried_->tests->lacking(effect, {estimate.effect});
-  return seen_effect(estimate, {}, fit, tests,
-                     rows_of_legs(legs, tried_->spans, fit, tests.system()));
+  const criticism::ScoreTest tests = tried_->tests->lacking(effect, {estimate.effect});
+  return criticism::seen_effect(estimate, {}, fit, tests,
+                                workbench::rows_of_legs(legs, tried_->spans, fit, tests.system()));
 }
 
 }  // namespace trussmap

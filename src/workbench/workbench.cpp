@@ -183,11 +183,11 @@ void Workbench::rename(std::size_t step, std::string label) {
 }
 
 void Workbench::exclude(const std::vector<std::size_t>& legs, const WorkbenchWatch& watch) {
-  const FitState& fit = *now().fit().state;
+  const fitting::FitState& fit = *now().fit().state;
   std::vector<std::vector<TimeSpan>> spans = fit.used.left_out;
   spans.resize(recordings_->size());
   bool any = false;
-  for (const LegSpan& leg : leg_spans(fit, options_.legs)) {
+  for (const validation::LegSpan& leg : validation::leg_spans(fit, options_.legs)) {
     if (leg.held_out || std::ranges::find(legs, leg.number) == legs.end()) continue;
     spans[idx(leg.session)].push_back(leg.time);
     any = true;
@@ -197,14 +197,15 @@ void Workbench::exclude(const std::vector<std::size_t>& legs, const WorkbenchWat
         "none of these legs can be excluded: the model is judged by those that are held out, and "
         "the others are out already");
   }
-  for (std::vector<TimeSpan>& one : spans) one = merged(std::move(one));
-  spans = recorded_spans(with_unconnected(std::move(spans), fit), *recordings_, fit);
+  for (std::vector<TimeSpan>& one : spans) one = recording::merged(std::move(one));
+  spans = validation::recorded_spans(validation::with_unconnected(std::move(spans), fit),
+                                     *recordings_, fit);
   WorkbenchStep step = from_here(WorkbenchStep::Kind::exclude);
   step.excluded.resize(spans.size());
   for (std::size_t s = 0; s < spans.size(); ++s) {
     clamp_to((*recordings_)[s].drive, spans[s]);
     std::ranges::copy(step.excluded[s], std::back_inserter(spans[s]));
-    step.excluded[s] = merged(std::move(spans[s]));
+    step.excluded[s] = recording::merged(std::move(spans[s]));
   }
   take(std::move(step), watch);
 }

@@ -79,7 +79,7 @@ inline std::filesystem::path instrumented(const std::filesystem::path& page,
   const std::size_t allowed = html.find(scripts);
   if (allowed == std::string::npos) throw std::runtime_error("the page has no policy");
   html.insert(allowed + scripts.size(),
-              "'" + content_hash(first) + "' '" + content_hash(last) + "' ");
+              "'" + report::content_hash(first) + "' '" + report::content_hash(last) + "' ");
   const std::size_t after = html.find("Content-Security-Policy");
   html.insert(html.find('\n', after) + 1, "<script>" + first + "</script>\n");
   html.insert(html.rfind("</body>"), "<script>" + last + "</script>");

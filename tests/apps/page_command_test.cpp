@@ -18,6 +18,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::page_command_test {
+using namespace report;
 namespace {
 
 namespace fs = std::filesystem;

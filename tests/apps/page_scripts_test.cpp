@@ -18,6 +18,7 @@
 #include <nlohmann/json.hpp>
 
 namespace trussmap::page_scripts_test {
+using namespace plot;
 namespace {
 
 using nlohmann::json;

@@ -25,7 +25,7 @@ Recording drive_about(bool compass, std::uint64_t seed) {
   WheeledRobot robot;
   robot.compass = compass;
   Recording recording = simulate_drive(mesh, tours.walk, {}, robot, seed).recording;
-  recording.survey = survey(mesh, 1e-6, seed);
+  recording.survey = simulation::survey(mesh, 1e-6, seed);
   return recording;
 }
 

@@ -168,7 +168,7 @@ TEST(BuiltPath, NeedsSomethingToTieItAndTheAdjustment) {
 /// A lecture hall by places that look alike, many of them wrong, beside its truth of positions.
 TEST(SlowBuiltPath, OfTheLectureHallIsNearItsTruth) {
   TRUSSMAP_NEEDS_SHARED("data/tuc-slam");
-  Dataset read = read_place_loops(testing::shared("data/tuc-slam/Lecture_Hall"));
+  Dataset read = datasets::read_place_loops(testing::shared("data/tuc-slam/Lecture_Hall"));
   std::istringstream text(read_file(testing::shared("data/tuc-slam/Lecture_Hall_GT.txt.xz")));
   for (std::string line; std::getline(text, line);) {
     std::istringstream words(line);

@@ -52,7 +52,7 @@ Recording drive_about(const Fault& fault, bool noise, std::uint64_t seed) {
   }
   Recording recording =
       simulate_drive(mesh, tours.walk, style, robot, seed, {{effect_of(fault)}}).recording;
-  recording.survey = survey(mesh, 1e-9, seed);
+  recording.survey = simulation::survey(mesh, 1e-9, seed);
   return recording;
 }
 
@@ -186,7 +186,7 @@ TEST(MapUnderEffectsTogether, SeveralActSideBySide) {
   style.standing = 0.0;
   Recording recording =
       simulate_drive(mesh, tours.walk, style, robot, 4, {model.effects}).recording;
-  recording.survey = survey(mesh, 1e-9, 4);
+  recording.survey = simulation::survey(mesh, 1e-9, 4);
   for (const Method method : kMethods) {
     EXPECT_LE(error_of(recording, model, method), 2e-3) << name_of(method);
   }

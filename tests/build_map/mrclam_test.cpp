@@ -21,8 +21,8 @@ namespace trussmap::mrclam_test {
 namespace {
 
 Dataset robot(int set, int number) {
-  return read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset" + std::to_string(set) + "/Robot" +
-                                     std::to_string(number)));
+  return datasets::read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset" + std::to_string(set) +
+                                               "/Robot" + std::to_string(number)));
 }
 
 MapOnSurvey mapped(const std::vector<Recording>& recordings, const Model& model, Method method) {

@@ -105,9 +105,9 @@ TEST(ContradictingRows, AreTakenOutByTheirPlace) {
     for (std::size_t k = 0; k < 5; ++k) one.sightings[k].t = static_cast<double>(k);
   }
   const std::vector<DrivenRecording> left =
-      without_rows(two, {{RecordingStream::sightings, 1, 3, ""},
-                         {RecordingStream::sightings, 1, 1, ""},
-                         {RecordingStream::sightings, 1, 3, ""}});
+      calibration::without_rows(two, {{estimation::RecordingStream::sightings, 1, 3, ""},
+                                      {estimation::RecordingStream::sightings, 1, 1, ""},
+                                      {estimation::RecordingStream::sightings, 1, 3, ""}});
   EXPECT_EQ(left[0].sightings.size(), 5U);
   std::vector<double> times;
   for (const Sighting& one : left[1].sightings) times.push_back(one.t);

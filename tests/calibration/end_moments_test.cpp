@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::end_moments_test {
+using namespace calibration;
 namespace {
 
 const TestPath kPaths[] = {{{10.0, 0.0}, {-10.0, 0.0}},

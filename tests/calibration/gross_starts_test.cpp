@@ -19,6 +19,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::gross_starts_test {
+using namespace calibration;
 namespace {
 
 constexpr std::uint64_t kSeed = 3;

@@ -17,6 +17,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::heading_offset_test {
+using namespace calibration;
 namespace {
 
 using testing::draw;

@@ -149,8 +149,8 @@ TEST(PaperTables, ClassicalModelsHaveTheCoefficientsSaid) {
   const auto steps = [](int count, double distance, double variance) {
     Motion motion;
     for (int k = 0; k < count; ++k) {
-      motion = then(
-          motion, classical_step(ClassicalModel::turn_then_drive, {distance, 0.0, 0.0, variance}));
+      motion = then(motion, odometry::classical_step(odometry::ClassicalModel::turn_then_drive,
+                                                     {distance, 0.0, 0.0, variance}));
     }
     return motion.covariance;
   };

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::second_odometer_test {
+using namespace calibration;
 namespace {
 
 using testing::after;

@@ -151,7 +151,7 @@ TEST_P(ScannerOf, EveryDriveIsFoundOrSaidToBeUnknown) {
   settings.loop_noise = 0.01;
   settings.loop_heading_noise = 0.003;
   settings.mounted.scanner = kFar;
-  if (has_steering(usual_robot(drive_named(settings.drive)))) settings.full_turns = 0;
+  if (drive::has_steering(usual_robot(drive_named(settings.drive)))) settings.full_turns = 0;
   Unknowing one = unknowing(settings);
   one.recording.sightings.clear();
   one.recording.survey.clear();

@@ -58,7 +58,7 @@ TEST(ValidateCalibration, AFewShortRunsAreHeldOutOneByOne) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     runs.push_back(short_run(robot_with(1.02), seed));
   }
-  const std::size_t legs = truth_legs(testing::driven(runs), 0.3).size();
+  const std::size_t legs = calibration::truth_legs(testing::driven(runs), 0.3).size();
   ASSERT_GE(legs, 12U);
   const CalibrationValidation found = validate_calibration(runs, nominal());
   EXPECT_EQ(found.scheme, HoldoutScheme::recordings);
@@ -88,7 +88,7 @@ TEST(ValidateCalibration, AHeldOutRunHasNoPartInItsPrediction) {
   for (std::uint64_t seed = 2; seed <= 4; ++seed) {
     runs.push_back(short_run(robot_with(1.0), seed));
   }
-  const std::size_t own = truth_legs({testing::driven(runs[0])}, 0.3).size();
+  const std::size_t own = calibration::truth_legs({testing::driven(runs[0])}, 0.3).size();
   ASSERT_GE(own, 2U);
   const CalibrationValidation found = validate_calibration(runs, nominal());
   ASSERT_EQ(found.scheme, HoldoutScheme::recordings);

@@ -20,6 +20,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::wheel_calibration_test {
+using namespace calibration;
 namespace {
 
 using testing::draw;

@@ -447,7 +447,7 @@ TEST(Check, RealRobotsHaveNoFindingButTheExchangedLabelsOfOneSurveyAndOneMisread
     for (const int robot : {1, 4}) {
       const std::string prefix =
           "data/mrclam/MRCLAM_Dataset" + std::to_string(set) + "/Robot" + std::to_string(robot);
-      const Dataset read = read_mrclam(testing::shared(prefix));
+      const Dataset read = datasets::read_mrclam(testing::shared(prefix));
       const std::vector<CheckFinding> findings = check_recordings({read.recording}, &read.model);
       if (set == 4 && robot == 1) {
         ASSERT_EQ(findings.size(), 1U) << prefix << "\n" << text_of(findings);

@@ -143,12 +143,12 @@ TEST(GraphCheck, NamesCovarianceForInformation) {
 TEST(GraphCheck, NamesDegrees) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     for (SyntheticGraph world : worlds(seed)) {
-      for (PoseEdge& edge : world.graph.pose_edges) edge.measured.heading *= kDegrees;
+      for (PoseEdge& edge : world.graph.pose_edges) edge.measured.heading *= geometry::kDegrees;
       EXPECT_EQ(kinds_in(world.graph), std::set<std::string>{"angle unit"}) << seed;
     }
     // Steps too small for a turn beyond a whole one: degrees show by what they lead to.
     SyntheticGraph fine = laps(400, 2, {0.002, 0.001}, seed);
-    for (PoseEdge& edge : fine.graph.pose_edges) edge.measured.heading *= kDegrees;
+    for (PoseEdge& edge : fine.graph.pose_edges) edge.measured.heading *= geometry::kDegrees;
     EXPECT_EQ(kinds_in(fine.graph), std::set<std::string>{"angle unit"}) << seed;
   }
 }
@@ -159,7 +159,7 @@ TEST(GraphCheck, NamesDegreesOfVerticesAlone) {
     world.graph.vertices[v].estimate = world.truth[v];
   }
   EXPECT_EQ(kinds_in(world.graph), std::set<std::string>{});
-  for (GraphVertex& one : world.graph.vertices) one.estimate->heading *= kDegrees;
+  for (GraphVertex& one : world.graph.vertices) one.estimate->heading *= geometry::kDegrees;
   const std::vector<CheckFinding> findings = check_graph(world.graph, "x.g2o");
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_EQ(findings.front().kind, "angle unit");

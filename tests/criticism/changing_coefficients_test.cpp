@@ -19,6 +19,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::changing_coefficients_test {
+using namespace criticism;
 namespace {
 
 Effect turn(const std::string& name, const std::string& shape, double coefficient) {

@@ -233,17 +233,17 @@ TEST(HeldOutLegs, MoveAsTheSlopesSay) {
   // An effect is the same as a recording with its action already in it.
   constexpr double kSize = 2e-3;
   const testing::SimulatedRecording one = testing::simulate_recording({true, true, true}, 9);
-  const FitState fit = fit_recordings({one.recording}, one.model);
-  const HeldOutLegs legs({one.recording}, fit, {}, {});
+  const fitting::FitState fit = fitting::fit_recordings({one.recording}, one.model);
+  const validation::HeldOutLegs legs({one.recording}, fit, {}, {});
   ASSERT_TRUE(legs.has_slopes());
-  const ScoreTest tests(fit);
+  const criticism::ScoreTest tests(fit);
   for (const Channel channel :
        {Channel::wheels, Channel::turn, Channel::compass, Channel::bearing, Channel::range}) {
     Effect effect;
     effect.name = name_of(channel);
     effect.channel = channel;
     effect.shape = {"1"};
-    const Score score = tests.test({effect}).front();
+    const criticism::Score score = tests.test({effect}).front();
     const HeldOut told = legs.moved(kSize * legs.slopes(effect, score.columns, score.landmarks));
     DrivenRecording changed = one.recording;
     for (std::size_t row = 0; row < changed.drive.rows(); ++row) {

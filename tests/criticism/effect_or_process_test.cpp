@@ -20,6 +20,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::effect_or_process_test {
+using namespace criticism;
+using namespace fitting;
 namespace {
 
 constexpr Eigen::Index kInstants = 40;

@@ -17,6 +17,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::effect_search_test {
+using namespace criticism;
+using namespace fitting;
 namespace {
 
 Tested tested(Form form, const std::string& family, double score, int tried) {

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::event_scores_test {
+using namespace criticism;
 namespace {
 
 class EventScores : public ::testing::Test {
@@ -34,10 +35,10 @@ class EventScores : public ::testing::Test {
   }
 
   testing::NoisyDrive world_ = testing::simulate_world({true, true, false, 1, 2}, 4);
-  FitState fit_ = fit_recordings(world_.recordings, world_.model);
+  fitting::FitState fit_ = fitting::fit_recordings(world_.recordings, world_.model);
   ScoreTest tests_{fit_};
-  FitProjection projection_{fit_, fit_.problem, tests_.system(),
-                            Eigen::MatrixXd(tests_.system().rows(), 0)};
+  fitting::FitProjection projection_{fit_, fit_.problem, tests_.system(),
+                                     Eigen::MatrixXd(tests_.system().rows(), 0)};
 };
 
 /// g^2/S becomes g^2/(S + phi/prior^2), the size -g/S likewise.

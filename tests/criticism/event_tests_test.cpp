@@ -16,6 +16,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::event_tests_test {
+using namespace fitting;
+using namespace criticism;
 namespace {
 
 using testing::Bump;
@@ -57,12 +59,12 @@ TEST(EventTests, TheScoreIsWhatTheProjectedColumnsExplain) {
 TEST(EventTests, AWrongSightingHasTheStatisticOfDataSnooping) {
   const NoisyDrive world = simulate_world({true, false, true, 1}, 8);
   const FitState fit = fit_recordings(world.recordings, world.model);
-  const std::vector<CheckedMeasurement> checked =
-      snoop(fit.problem, fit.columns.border, fit.adjustment);
+  const std::vector<estimation::CheckedMeasurement> checked =
+      estimation::snoop(fit.problem, fit.columns.border, fit.adjustment);
   int compared = 0;
   for (const TestedEvent& event : test_events(fit, ScoreTest(fit))) {
     if (event.kind != EventKind::sighting) continue;
-    const CheckedMeasurement& same = checked[event.measurements.front()];
+    const estimation::CheckedMeasurement& same = checked[event.measurements.front()];
     // To what a fit's settled residuals leave of their gradient.
     EXPECT_NEAR(event.score, same.statistic, 1e-3 * (1.0 + same.statistic)) << event.name;
     EXPECT_EQ(event.dof, same.checked);

@@ -20,6 +20,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::explanations_test {
+using namespace criticism;
+using namespace fitting;
 namespace {
 
 using testing::NoisyDrive;

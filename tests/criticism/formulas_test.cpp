@@ -46,16 +46,16 @@ double at(const Shape& shape, const Vector2& place) {
 TEST(Formulas, AreFiniteAndEachIsWrittenOnce) {
   const SimulatedRecording world = drawn(3, {});
   const ModelFit fit = fit_model({testing::driven(world.drive.recording)}, world.model);
-  const ScoreTest tests(*fit.state);
-  const FormulaGrammar grammar(*fit.state, tests.context());
+  const criticism::ScoreTest tests(*fit.state);
+  const criticism::FormulaGrammar grammar(*fit.state, tests.context());
   for (const Channel channel : {Channel::travel, Channel::turn, Channel::compass}) {
     std::set<std::vector<std::string>> seen;
-    for (const Candidate& one : grammar.of(channel)) {
+    for (const criticism::Candidate& one : grammar.of(channel)) {
       EXPECT_TRUE(seen.insert(texts_of(one.effect.shape)).second)
           << one.effect.shape.front().text();
       for (const Shape& shape : one.effect.shape) {
         EXPECT_EQ(Shape(shape.text()), shape);  // can be pasted
-        const auto values = tests.context().values(shape, ShapeContext::Instant::middle);
+        const auto values = tests.context().values(shape, fitting::ShapeContext::Instant::middle);
         for (const double value : values.front()) {
           ASSERT_TRUE(std::isfinite(value)) << shape.text();
         }

@@ -25,6 +25,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::gross_constants_test {
+using namespace criticism;
 namespace {
 
 SimulationSettings small_world(std::uint64_t seed) {

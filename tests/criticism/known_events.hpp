@@ -38,14 +38,15 @@ inline Bump bumped(const NoisyWorld& how, double sds, std::uint64_t seed) {
   } while (motion.rows[row].activity != Activity::drive);
   const bool left = random() % 2 == 0;
   const double sign = random() % 2 == 0 ? 1.0 : -1.0;
-  const FitState fit = fit_recordings(result.world.recordings, result.world.model);
-  const ScoreTest tests(fit);
-  EffectPattern pattern;
+  const fitting::FitState fit =
+      fitting::fit_recordings(result.world.recordings, result.world.model);
+  const criticism::ScoreTest tests(fit);
+  estimation::EffectPattern pattern;
   pattern.drives.emplace_back(drive.rows());
   pattern.drives[0][row].advance = 0.5;
   pattern.drives[0][row].turn = (left ? -1.0 : 1.0) / result.world.model.robot.wheelbase;
-  const EffectParameters border{pattern};
-  RecordingSystem system(fit.problem, border);
+  const estimation::EffectParameters border{pattern};
+  estimation::RecordingSystem system(fit.problem, border);
   system.linearise(fit.adjustment.state, Eigen::VectorXd::Zero(1));
   const double told = tests.projected(system.border()).norm();
   (left ? drive.pair.left : drive.pair.right)[row] += sign * sds / told;
@@ -75,15 +76,16 @@ struct Moved {
   double chi2 = 0.0;
 };
 inline Moved moved_by(const NoisyDrive& world, const std::string& landmark) {
-  const FitState fit = fit_recordings(with_another(world.recordings, landmark), world.model);
+  const fitting::FitState fit =
+      fitting::fit_recordings(with_another(world.recordings, landmark), world.model);
   int before = -1;
   int after = -1;
   for (int k = 0; k < fit.problem.landmark_count(); ++k) {
     if (fit.problem.landmarks[idx(k)] == landmark) before = k;
     if (fit.problem.landmarks[idx(k)] == landmark + "'") after = k;
   }
-  const Eigen::MatrixXd joint =
-      joint_covariance(fit.problem, fit.columns.border, fit.adjustment, {before, after});
+  const Eigen::MatrixXd joint = estimation::joint_covariance(fit.problem, fit.columns.border,
+                                                             fit.adjustment, {before, after});
   Moved result;
   result.by =
       fit.adjustment.state.landmarks[idx(after)] - fit.adjustment.state.landmarks[idx(before)];

@@ -140,10 +140,10 @@ TEST(LargeEffects, AreForetoldAsTheFitThenFindsThem) {
   ASSERT_GT(without.chi2, 4.0 * without.dof);
   Effect mine = left_with_speed_squared(0.0);
   mine.coefficients.clear();
-  const Score score = ScoreTest(*without.state).test({mine}).front();
+  const criticism::Score score = criticism::ScoreTest(*without.state).test({mine}).front();
   Model model = one.model;
   model.effects = {mine};
-  const ModelFit with = refit({testing::driven(one.drive.recording)}, model, without);
+  const ModelFit with = fitting::refit({testing::driven(one.drive.recording)}, model, without);
   EXPECT_NEAR(score.score, without.chi2 - with.chi2, 0.01 * (without.chi2 - with.chi2));
   EXPECT_NEAR(score.coefficients.at(0), 0.02, 0.001);
 }

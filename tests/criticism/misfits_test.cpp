@@ -21,8 +21,8 @@ TEST(Misfits, LegsAreAsMuchTooLongAsTheWheelsSay) {
   testing::retake(one.recording.drive);
   one.model.noise.left *= 10.0;
   one.model.noise.right *= 10.0;
-  const FitState fit = fit_recordings({one.recording}, one.model);
-  const Misfits misfits = find_misfits(fit, ScoreTest(fit), {});
+  const fitting::FitState fit = fitting::fit_recordings({one.recording}, one.model);
+  const criticism::Misfits misfits = criticism::find_misfits(fit, criticism::ScoreTest(fit), {});
   ASSERT_GT(misfits.legs.size(), 20U);
   double stretch = 0.0;
   double turn = 0.0;

@@ -68,7 +68,7 @@ double error_after(const std::vector<TimedPose>& poses, const std::vector<TruthR
 
 TEST(SlowMrclamDiscovery, FindsDelayAndLossInArcsAndDeadReckoningGetsBetter) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");
-  const Dataset read = read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset6/Robot5"));
+  const Dataset read = datasets::read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset6/Robot5"));
   DiscoverOptions options;
   options.diagnosis.fit.use_truth = false;
   options.diagnosis.fit.gate = 16.0;

@@ -22,6 +22,9 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::noise_tests_test {
+using namespace fitting;
+using namespace estimation;
+using namespace criticism;
 namespace {
 
 using testing::add_noise;

@@ -20,6 +20,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::place_fields_test {
+using namespace criticism;
 namespace {
 
 Effect by_place(Channel channel, const std::vector<std::string>& shapes, double coefficient) {

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::place_uncertainty_test {
+using namespace criticism;
 namespace {
 
 struct Drawn {

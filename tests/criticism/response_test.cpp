@@ -14,6 +14,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::response_test {
+using namespace fitting;
+using namespace criticism;
 namespace {
 
 Effect effect(Channel channel, const std::vector<Shape>& shape,

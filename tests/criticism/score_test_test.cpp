@@ -17,6 +17,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::score_test_test {
+using namespace criticism;
+using namespace fitting;
 namespace {
 
 using testing::Equipment;

@@ -18,6 +18,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::subset_search_test {
+using namespace criticism;
 namespace {
 
 /// Columns of each candidate and residuals of which some of them explain much.

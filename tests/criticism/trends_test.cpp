@@ -41,8 +41,8 @@ DrivenRecording split(const DrivenRecording& whole, int parts) {
 
 /// Turn rate from which on the trend against the sense of turning counts a turn, rad/s.
 double least_turn(const std::vector<DrivenRecording>& recordings, const Model& model) {
-  const FitState fit = fit_recordings(recordings, model);
-  for (const Trend& trend : find_trends(fit, ScoreTest(fit))) {
+  const fitting::FitState fit = fitting::fit_recordings(recordings, model);
+  for (const Trend& trend : criticism::find_trends(fit, criticism::ScoreTest(fit))) {
     if (trend.against != "turn sense") continue;
     return std::abs(trend.effect.shape.front().parameter("turn_rate").value_or(0.0));
   }

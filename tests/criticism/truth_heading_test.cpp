@@ -15,6 +15,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::truth_heading_test {
+using namespace estimation;
+using namespace criticism;
 namespace {
 
 /// A drive with truth once a second, its headings turned.

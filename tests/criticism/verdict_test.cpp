@@ -17,6 +17,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::verdict_test {
+using namespace criticism;
 namespace {
 
 Trend trend(double p_adjusted) {

@@ -22,6 +22,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::converted_recording_test {
+using namespace datasets;
 namespace {
 
 namespace fs = std::filesystem;

@@ -17,6 +17,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::encoder_log_test {
+using namespace datasets;
 namespace {
 
 using testing::ScratchFolder;

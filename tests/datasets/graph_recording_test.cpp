@@ -29,7 +29,7 @@ const std::string kGraph =
 
 TEST(Dataset, ReckonsAsItsEdgesSay) {
   const ScratchFolder scratch;
-  const Dataset read = read_graph_recording(scratch.write("a.g2o", kGraph));
+  const Dataset read = datasets::read_graph_recording(scratch.write("a.g2o", kGraph));
   const DrivenRecording recording = with_wheels(read.recording, read.model.robot);
   const std::vector<Pose> path =
       dead_reckoned_path(recording.drive, read.model.robot, read.model.noise);
@@ -61,7 +61,7 @@ TEST(Dataset, ReckonsAsItsEdgesSay) {
 std::string complaint(const std::string& text) {
   const ScratchFolder scratch;
   try {
-    (void)read_graph_recording(scratch.write("a.g2o", text));
+    (void)datasets::read_graph_recording(scratch.write("a.g2o", text));
   } catch (const InputError& error) {
     return std::string(error.what()).substr(scratch.path().string().size() + 1);
   }
@@ -87,7 +87,7 @@ TEST(SlowGraphRecording, IntelIsWhatTheGraphIs) {
   TRUSSMAP_NEEDS_SHARED("data/posegraph/input_INTEL_g2o.g2o.xz");
   const auto file = testing::shared("data/posegraph/input_INTEL_g2o.g2o.xz");
   const PoseGraphAdjustment graph = adjust(read_g2o(file.string()));
-  const Dataset read = read_graph_recording(file);
+  const Dataset read = datasets::read_graph_recording(file);
   const ModelFit fit = fit_model({with_wheels(read.recording, read.model.robot)}, read.model);
   const std::vector<TimedPose> poses = adjusted_poses(fit, 0);
   ASSERT_EQ(poses.size(), graph.estimates.size());

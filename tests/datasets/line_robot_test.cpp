@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::line_robot_test {
+using namespace datasets;
 namespace {
 
 using testing::ScratchFolder;

@@ -33,12 +33,12 @@ std::vector<double> times_of(const Dataset& read) {
 
 TEST(MrclamReader, ASightingBeforeTheStartOrAfterTheEndIsOutsideTheDrive) {
   const ScratchFolder scratch;
-  const Dataset read = read_mrclam(robot_in(scratch,
-                                            "99.99 63 1 0\n"      // before
-                                            "100.0 63 1 0.1\n"    // at the start
-                                            "100.7 72 2 -0.1\n"   // within
-                                            "101.0 63 3 0\n"      // at the end
-                                            "101.01 72 2 0\n"));  // after
+  const Dataset read = datasets::read_mrclam(robot_in(scratch,
+                                                      "99.99 63 1 0\n"      // before
+                                                      "100.0 63 1 0.1\n"    // at the start
+                                                      "100.7 72 2 -0.1\n"   // within
+                                                      "101.0 63 3 0\n"      // at the end
+                                                      "101.01 72 2 0\n"));  // after
   EXPECT_EQ(read.recording.drive.start(), 0.0);
   EXPECT_EQ(times_of(read), (std::vector<double>{0.0, 0.7, 1.0}));
   EXPECT_EQ(read.figure("outside_drive"), 2);
@@ -51,13 +51,14 @@ TEST(MrclamReader, ASightingBeforeTheStartOrAfterTheEndIsOutsideTheDrive) {
 
 TEST(MrclamReader, CountsRobotsUnknownBarcodesAndFrames) {
   const ScratchFolder scratch;
-  const Dataset read = read_mrclam(robot_in(scratch,
-                                            "100.1 14 1 0\n"       // a robot
-                                            "100.1 99 1 0\n"       // nobody's
-                                            "100.500 63 1 0\n"     // a frame: 5 ms apart at most
-                                            "100.504 72 1 0\n"     //
-                                            "100.506 63 1 0\n"     // 6 ms after its first
-                                            "100.300 72 1 0\n"));  // earlier than the one before
+  const Dataset read =
+      datasets::read_mrclam(robot_in(scratch,
+                                     "100.1 14 1 0\n"       // a robot
+                                     "100.1 99 1 0\n"       // nobody's
+                                     "100.500 63 1 0\n"     // a frame: 5 ms apart at most
+                                     "100.504 72 1 0\n"     //
+                                     "100.506 63 1 0\n"     // 6 ms after its first
+                                     "100.300 72 1 0\n"));  // earlier than the one before
   EXPECT_EQ(read.figure("robots_seen"), 1);
   EXPECT_EQ(read.figure("unknown_barcodes"), 1);
   EXPECT_EQ(read.figure("outside_drive"), 0);
@@ -72,7 +73,7 @@ TEST(MrclamReader, TruthEndsWithTheDrive) {
   scratch.write(
       "Robot1_Groundtruth.dat",
       "99.9 9 9 9\n100.0 1 2 0.1\n100.0 9 9 9\n100.5 3 4 0.2\n101.0 5 6 0.3\n101.1 9 9 9\n");
-  const Dataset read = read_mrclam(prefix);
+  const Dataset read = datasets::read_mrclam(prefix);
   ASSERT_EQ(read.recording.truth.size(), 3U);
   EXPECT_EQ(read.recording.truth[0].x, 1.0);
   EXPECT_EQ(read.recording.truth[1].y, 4.0);

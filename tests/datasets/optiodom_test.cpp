@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::optiodom_test {
+using namespace datasets;
 namespace {
 
 using testing::ScratchFolder;

@@ -22,6 +22,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::phil_test {
+using namespace datasets;
 namespace {
 
 using testing::Ran;

@@ -19,6 +19,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::place_loops_test {
+using namespace datasets;
 namespace {
 
 using testing::ScratchFolder;

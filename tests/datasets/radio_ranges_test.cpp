@@ -18,6 +18,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::radio_ranges_test {
+using namespace datasets;
 namespace {
 
 using testing::ScratchFolder;

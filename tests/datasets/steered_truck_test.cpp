@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::steered_truck_test {
+using namespace datasets;
 namespace {
 
 using testing::ScratchFolder;

@@ -215,12 +215,12 @@ TEST(Distributed, ToursOfThreeProcessesAreThoseOfOne) {
 
 TEST(Distributed, HilbertsCurveGoesFromCellToNeighbour) {
   constexpr std::uint32_t kSide = 32;
-  constexpr std::uint32_t kCell = (std::uint32_t{1} << kHilbertBits) / kSide;
+  constexpr std::uint32_t kCell = (std::uint32_t{1} << distributed::kHilbertBits) / kSide;
   std::map<std::uint64_t, std::array<int, 2>> cells;
   for (std::uint32_t x = 0; x < kSide; ++x) {
     for (std::uint32_t y = 0; y < kSide; ++y) {
       // Of a cell's places the curve's first, so that cells are in order.
-      const std::uint64_t place = hilbert_place(x * kCell, y * kCell) / kCell / kCell;
+      const std::uint64_t place = distributed::hilbert_place(x * kCell, y * kCell) / kCell / kCell;
       cells[place] = {static_cast<int>(x), static_cast<int>(y)};
     }
   }

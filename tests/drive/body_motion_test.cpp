@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::body_motion_test {
+using namespace drive;
 namespace {
 
 const Robot kRobot{.wheelbase = 0.4};

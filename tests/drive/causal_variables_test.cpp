@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::causal_variables_test {
+using namespace drive;
 namespace {
 
 using testing::add_rows;

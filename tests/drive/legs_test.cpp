@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::legs_test {
+using namespace drive;
 namespace {
 
 /// One metre a second for ten seconds, in rows of one second.

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::row_variables_test {
+using namespace recording;
 namespace {
 
 using testing::add_rows;
@@ -30,7 +31,8 @@ MotionRows plain_drive() {
 }
 
 RowVariables variables_of(const MotionRows& drive) {
-  return row_variables(drive, Robot{.wheelbase = 0.4}, {}, std::vector<Pose>(drive.rows()), 2);
+  return drive::row_variables(drive, Robot{.wheelbase = 0.4}, {}, std::vector<Pose>(drive.rows()),
+                              2);
 }
 
 TEST(RowVariables, AreTheReservedOnesAndTheCovariates) {

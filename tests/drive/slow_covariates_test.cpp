@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::slow_covariates_test {
+using namespace drive;
 namespace {
 
 /// 20 minutes of rows of 0.1 s, with columns of all kinds. Seed 1.

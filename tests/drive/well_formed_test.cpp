@@ -35,7 +35,7 @@ std::string refusal(const std::function<void(DrivenRecording&)>& spoil) {
   DrivenRecording recording = straight();
   spoil(recording);
   try {
-    require_well_formed(recording, Robot());
+    drive::require_well_formed(recording, Robot());
   } catch (const std::invalid_argument& error) {
     return error.what();
   }

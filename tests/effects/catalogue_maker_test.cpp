@@ -132,7 +132,7 @@ TEST(CatalogueMaker, HasTakenEveryFile) {
   for (const auto& one : fs::directory_iterator(TRUSSMAP_SOURCE_DIR "/src/effects/catalogue")) {
     if (one.path().extension() == ".toml") files.insert(one.path().stem().string());
   }
-  for (const CatalogueRecord& one : catalogue_records()) {
+  for (const effects::CatalogueRecord& one : effects::catalogue_records()) {
     std::string name(one.entry.name);
     std::replace(name.begin(), name.end(), ' ', '-');
     records.insert(name);

@@ -12,10 +12,11 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::catalogue_test {
+using namespace text;
 namespace {
 
 TEST(Catalogue, EveryShapeCanBeReadAndSpeaksOfWhatThereIs) {
-  const std::vector<std::string>& known = reserved_variables();
+  const std::vector<std::string>& known = recording::reserved_variables();
   std::set<std::string_view> names;
   for (const CatalogueEntry& entry : catalogue()) {
     EXPECT_TRUE(names.insert(entry.name).second) << entry.name;

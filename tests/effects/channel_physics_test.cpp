@@ -14,6 +14,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::channel_physics_test {
+using namespace effects;
+using namespace drive;
 namespace {
 
 constexpr double kWheelbase = 0.4;

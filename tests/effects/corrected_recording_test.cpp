@@ -35,8 +35,9 @@ DrivenRecording corrected(Channel channel, const Shape& shape, double coefficien
   model.robot.wheelbase = kWheelbase;
   model.effects.push_back({"test", channel, {shape}, {coefficient}, false});
   const DrivenRecording r = recording();
-  return corrected_recording(
-      r, model, row_variables(r.drive, Robot{.wheelbase = kWheelbase}, {}, std::vector<Pose>(3), 0),
+  return effects::corrected_recording(
+      r, model,
+      drive::row_variables(r.drive, Robot{.wheelbase = kWheelbase}, {}, std::vector<Pose>(3), 0),
       0);
 }
 

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::shape_test {
+using namespace effects;
 namespace {
 
 using Values = std::vector<double>;

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::data_snooping_test {
+using namespace estimation;
 namespace {
 
 using testing::simulate_recording;
@@ -54,7 +55,7 @@ TEST(DataSnooping, ResidualsBySourceAreThriceAsLargeWhereNoiseIsStatedAThird) {
       *sd *= scale;
     }
     const RecordingProblem problem = make_problem({one.recording}, model);
-    return residuals_by_source(problem, snoop(problem, {}, adjust(problem)));
+    return criticism::residuals_by_source(problem, snoop(problem, {}, adjust(problem)));
   };
   const std::vector<SourceResiduals> stated = residuals(1.0);
   const std::vector<SourceResiduals> understated = residuals(1.0 / 3.0);

@@ -20,13 +20,14 @@ TEST(FittedRows, AreThoseOfTheWholeInverse) {
   Model model = world.model;
   model.effects = {catalogue_effect("wheelbase"), catalogue_effect("wheel scale")};
   const ModelFit fit = fit_model({world.recording}, model);
-  const FitState& state = *fit.state;
-  RecordingSystem system(state.problem, state.columns.border);
-  system.set_weights(weights_without(state.adjustment.left_out, state.problem.measurements.size()));
+  const fitting::FitState& state = *fit.state;
+  estimation::RecordingSystem system(state.problem, state.columns.border);
+  system.set_weights(
+      estimation::weights_without(state.adjustment.left_out, state.problem.measurements.size()));
   system.linearise(state.adjustment.state, state.adjustment.coefficients);
   system.factorise();
   ASSERT_EQ(system.border().cols(), 2);
-  const FittedRows fitted(system);
+  const estimation::FittedRows fitted(system);
   for (std::size_t k = 0; k < state.problem.measurements.size(); ++k) {
     const Eigen::MatrixXd J = system.transposed_rows(k);
     const Eigen::MatrixXd expected = J.transpose() * system.solve(J);

@@ -54,8 +54,8 @@ inline std::vector<Piece> pieces_between(const MotionRows& drive, double from, d
 }
 
 /// The four numbers of a segment whose pieces have so much g of a channel, as channel.hpp words it.
-inline Vector4 numbers_with(const std::vector<Piece>& pieces, Channel channel,
-                            const std::vector<double>& g, double wheelbase) {
+inline estimation::Vector4 numbers_with(const std::vector<Piece>& pieces, Channel channel,
+                                        const std::vector<double>& g, double wheelbase) {
   std::complex<double> place;
   double heading = 0.0;
   double first = 0.0;
@@ -88,16 +88,16 @@ inline Vector4 numbers_with(const std::vector<Piece>& pieces, Channel channel,
 }
 
 /// What one unit of g in each piece adds to the four numbers: differences of fourth order.
-inline std::vector<Vector4> slopes_by_piece(const std::vector<Piece>& pieces, Channel channel,
-                                            double wheelbase) {
+inline std::vector<estimation::Vector4> slopes_by_piece(const std::vector<Piece>& pieces,
+                                                        Channel channel, double wheelbase) {
   constexpr double kStep = 5e-4;
-  std::vector<Vector4> slopes;
+  std::vector<estimation::Vector4> slopes;
   std::vector<double> g(pieces.size(), 0.0);
-  const Vector4 plain = numbers_with(pieces, channel, g, wheelbase);
+  const estimation::Vector4 plain = numbers_with(pieces, channel, g, wheelbase);
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const auto at = [&](double value) {
       g[k] = value;
-      Vector4 change = numbers_with(pieces, channel, g, wheelbase) - plain;
+      estimation::Vector4 change = numbers_with(pieces, channel, g, wheelbase) - plain;
       g[k] = 0.0;
       change[3] = wrap_angle(change[3]);
       return change;
@@ -166,7 +166,7 @@ inline double covariance_of(ProcessKind process, double length, std::size_t i, s
 /// Covariance of all measured values, one below the other, for sd = 1. Channels: travel, left,
 /// difference, turn, drift, compass; range and bearing. Legs are those between landmarks that the
 /// robot stands on.
-inline Eigen::MatrixXd process_covariance(const RecordingProblem& problem,
+inline Eigen::MatrixXd process_covariance(const estimation::RecordingProblem& problem,
                                           const std::vector<DrivenRecording>& recordings,
                                           const Model& model, const NoiseProcess& process) {
   const bool by_distance = process.process == ProcessKind::correlated_in_distance ||
@@ -175,12 +175,12 @@ inline Eigen::MatrixXd process_covariance(const RecordingProblem& problem,
   std::vector<Source> sources;
   std::map<std::pair<int, int>, std::pair<double, int>> passes;
   Eigen::Index rows = 0;
-  for (const Measurement& one : problem.measurements) {
+  for (const estimation::Measurement& one : problem.measurements) {
     Source source;
     source.row = rows;
     source.session = one.session;
     rows += one.rows;
-    if (one.session < 0 || of_views == (one.kind == &kinds::segment)) continue;
+    if (one.session < 0 || of_views == (one.kind == &estimation::kinds::segment)) continue;
     const DrivenRecording& recording = recordings[idx(one.session)];
     const double start = 2.0 * recording.drive.t[0] - recording.drive.t[1];
     const double t = problem.poses[idx(one.from - problem.landmark_count())].t;
@@ -190,7 +190,7 @@ inline Eigen::MatrixXd process_covariance(const RecordingProblem& problem,
                         [at](const Sighting& seen) { return seen.standing() && seen.t < at; }));
     };
     if (of_views) {
-      if (one.kind != &kinds::view) continue;
+      if (one.kind != &estimation::kinds::view) continue;
       if (process.channel == Channel::bearing && one.rows < 2) continue;
       auto& [seen, pass] = passes.try_emplace({one.session, one.to}, t, 0).first->second;
       if (t - seen > 5.0) ++pass;
@@ -206,7 +206,7 @@ inline Eigen::MatrixXd process_covariance(const RecordingProblem& problem,
     }
     const double end = problem.poses[idx(one.to - problem.landmark_count())].t;
     const std::vector<Piece> pieces = pieces_between(recording.drive, t, end);
-    const std::vector<Vector4> slopes =
+    const std::vector<estimation::Vector4> slopes =
         slopes_by_piece(pieces, process.channel, model.robot.wheelbase);
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       source.unit = slopes[k].head(one.rows);

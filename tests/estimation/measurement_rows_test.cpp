@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::measurement_rows_test {
+using namespace estimation;
 namespace {
 
 /// Two landmarks (nodes 0, 1), two poses (nodes 2, 3) and the second landmark's orientation (4).
@@ -35,7 +36,7 @@ Measurement measurement(const MeasurementKind* kind, int from, int to, int rows)
 
 struct Everything {
   RecordingState state;
-  ViewPattern view;
+  effects::ViewPattern view;
 };
 
 Everything random_values(std::uint64_t seed) {
@@ -59,7 +60,7 @@ double* coordinate(Everything& all, int node, int k) {
 }
 
 double* view_entry(Everything& all, int k) {
-  ViewPattern& view = all.view;
+  effects::ViewPattern& view = all.view;
   double* const entries[] = {&view.ahead, &view.left,        &view.heading,
                              &view.range, &view.range_scale, &view.bearing,
                              &view.x,     &view.y,           &view.yaw};

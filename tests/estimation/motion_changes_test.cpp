@@ -19,7 +19,8 @@ void add(MotionRows& drive, int rows, double left, double right) {
 
 std::vector<double> changes(const MotionRows& drive) {
   const Robot robot{0.3};
-  return motion_changes(drive, segment_rows(drive, drive.start(), drive.t.back()), robot, {});
+  return estimation::motion_changes(
+      drive, estimation::segment_rows(drive, drive.start(), drive.t.back()), robot, {});
 }
 
 TEST(MotionChanges, ASpinAndADriveAreTwoMotions) {

@@ -20,6 +20,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::multilateration_test {
+using namespace estimation;
 namespace {
 
 std::vector<RangeReading> readings_of(const Vector2& beacon, const std::vector<Vector2>& path,

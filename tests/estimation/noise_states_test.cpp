@@ -27,6 +27,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::noise_states_test {
+using namespace effects;
+using namespace estimation;
 namespace {
 
 using testing::process_covariance;
@@ -776,7 +778,7 @@ TEST(SystemWithStates, DerivativesAreThoseOfTheResiduals) {
 TEST(ProjectionWithStates, BlocksAreThoseOfTheDenseOne) {
   const Linearised one = linearised(7, true, true, lasting_model(true));
   RecordingSystem system(one.problem, one.border);
-  FitState fit;
+  fitting::FitState fit;
   for (std::size_t k = 0; k < one.problem.measurements.size(); ++k) {
     if (one.problem.measurements[k].kind == &kinds::view && k % 5 == 0) {
       fit.adjustment.left_out.push_back(static_cast<int>(k));
@@ -803,7 +805,7 @@ TEST(ProjectionWithStates, BlocksAreThoseOfTheDenseOne) {
       Eigen::MatrixXd::Identity(system.rows(), system.rows()) -
       scaled * Eigen::LLT<Eigen::MatrixXd>(scaled.transpose() * scaled).solve(scaled.transpose());
   EXPECT_LT((P * P - P).cwiseAbs().maxCoeff(), 1e-7);
-  const FitProjection projection(fit, one.problem, system, nuisance);
+  const fitting::FitProjection projection(fit, one.problem, system, nuisance);
   for (std::size_t k = 0; k < one.problem.measurements.size(); ++k) {
     const int rows = one.problem.measurements[k].rows;
     const Eigen::MatrixXd expected = P.block(system.first_row(k), system.first_row(k), rows, rows);

@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::pure_error_test {
+using namespace estimation;
 namespace {
 
 /// A ring of eight with chords, true positions.

@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::recording_adjustment_test {
+using namespace estimation;
 namespace {
 
 using testing::Equipment;

@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::recording_border_test {
+using namespace estimation;
 namespace {
 
 using testing::simulate_recording;
@@ -110,8 +111,8 @@ TEST(RecordingEffectParameters, ViewPatternsActLikeTheSensorsOffsets) {
   }
   EffectPattern bearing;
   bearing.name = "bearing";
-  bearing.sightings = {std::vector<ViewPattern>(simulated.recording.sightings.size())};
-  for (ViewPattern& view : bearing.sightings[0]) view.bearing = 1.0;
+  bearing.sightings = {std::vector<effects::ViewPattern>(simulated.recording.sightings.size())};
+  for (effects::ViewPattern& view : bearing.sightings[0]) view.bearing = 1.0;
   const RecordingProblem problem = make_problem({simulated.recording}, simulated.model);
   const RecordingAdjustment fit = adjust(problem, {bearing});
   const double sd = std::sqrt(fit.coefficient_covariance(0, 0));

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::recording_calibration_test {
+using namespace estimation;
 namespace {
 
 using testing::Equipment;

@@ -17,6 +17,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::restricted_likelihood_test {
+using namespace estimation;
 namespace {
 
 struct Dense {

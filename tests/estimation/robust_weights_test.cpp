@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::robust_weights_test {
+using namespace estimation;
 namespace {
 
 /// The weight that makes w r^2 + penalty(w) least, on a grid: what weights stand for (Black &

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::segment_motion_test {
+using namespace estimation;
 namespace {
 
 constexpr double kWheelbase = 0.34;
@@ -117,14 +118,14 @@ TEST(SegmentMotion, DerivativesByEffectsAreThoseOfDifferences) {
   const MotionRows drive = drive_with_compass(50, 5);
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(-0.01, 0.01);
-  std::vector<std::vector<DrivePattern>> patterns(3);
+  std::vector<std::vector<effects::DrivePattern>> patterns(3);
   for (auto& pattern : patterns) {
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       pattern.push_back({uniform(random), uniform(random), uniform(random), uniform(random)});
     }
   }
-  const std::vector<const std::vector<DrivePattern>*> effects = {&patterns[0], nullptr,
-                                                                 &patterns[2]};
+  const std::vector<const std::vector<effects::DrivePattern>*> effects = {&patterns[0], nullptr,
+                                                                          &patterns[2]};
   const auto rows = segment_rows(drive, 0.05, 4.93);
   const Eigen::Vector3d at(0.3, 0.2, -0.4);
   const SegmentWithEffects segment = segment_motion(rows, effects, at);

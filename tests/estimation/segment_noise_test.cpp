@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::segment_noise_test {
+using namespace estimation;
 namespace {
 
 using Vector3 = Eigen::Vector3d;

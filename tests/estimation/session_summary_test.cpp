@@ -13,6 +13,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::session_summary_test {
+using namespace estimation;
+using namespace effects;
 namespace {
 
 using testing::Days;

@@ -17,6 +17,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::simulated_effects_test {
+using namespace effects;
+using namespace estimation;
 namespace {
 
 struct Simulated {
@@ -78,7 +80,8 @@ EffectParameters border_of(const Effect& effect, const Simulated& simulated) {
   const TrueMotion& motion = simulated.drive.motion;
   std::vector<Pose> path;
   for (const TrueRow& row : motion.rows) path.push_back(row.pose);
-  RowVariables variables = row_variables(drive, simulated.robot.geometry, motion.start, path, 0);
+  RowVariables variables =
+      drive::row_variables(drive, simulated.robot.geometry, motion.start, path, 0);
   if (effect.channel == Channel::compass) {
     for (std::size_t row = 0; row < path.size(); ++row) {
       variables["heading"][row] = path[row].heading;

@@ -74,7 +74,8 @@ inline SimulatedRecording simulate_exactly(const Equipment& equipment, std::uint
 }
 
 /// Largest distance of a landmark from where it truly is, m.
-inline double largest_error(const RecordingProblem& problem, const RecordingState& state,
+inline double largest_error(const estimation::RecordingProblem& problem,
+                            const estimation::RecordingState& state,
                             const std::map<std::string, Vector2>& truth) {
   double largest = 0.0;
   for (std::size_t k = 0; k < problem.landmarks.size(); ++k) {

@@ -20,6 +20,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::student_tails_test {
+using namespace estimation;
 namespace {
 
 using testing::invert;
@@ -211,14 +212,14 @@ TEST(StudentTails, AGateLeavesOutHardlyAny) {
 TEST(StudentTails, ColumnsBesideTheNoiseAreWhitenedByItsVariance) {
   const DrivenRecording recording = with_tails(76, 0.05);
   const ModelFit fitted = fit_model({recording}, with_range_bias(with_noise(kTails)));
-  const FitState& fit = *fitted.state;
+  const fitting::FitState& fit = *fitted.state;
   const auto columns_under = [&fit](const RecordingProblem& problem) {
     RecordingSystem system(problem, fit.columns.border);
     system.linearise(fit.adjustment.state, fit.adjustment.coefficients);
     return Eigen::MatrixXd(system.border());
   };
-  NoiseReml reml(fit, fit.model.noise);
-  (void)minus_two_log_under(reml, fit.model.noise, columns_under(fit.problem));
+  fitting::NoiseReml reml(fit, fit.model.noise);
+  (void)fitting::minus_two_log_under(reml, fit.model.noise, columns_under(fit.problem));
   const Eigen::MatrixXd expected = columns_under(reml.problem());
   const Eigen::Index rows = std::min(expected.rows(), reml.nuisance().rows());
   const auto sightings = expected.topRows(rows);

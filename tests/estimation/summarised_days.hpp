@@ -55,10 +55,10 @@ inline Days days_of(const Equipment& equipment, int count, bool effects, std::ui
   return days;
 }
 
-inline EffectPattern lever_of(const std::vector<DrivenRecording>& recordings) {
-  EffectPattern result;
+inline estimation::EffectPattern lever_of(const std::vector<DrivenRecording>& recordings) {
+  estimation::EffectPattern result;
   result.name = "lever";
-  ViewPattern unit;
+  effects::ViewPattern unit;
   unit.ahead = 1.0;
   for (const DrivenRecording& one : recordings) {
     result.sightings.emplace_back(one.sightings.size(), unit);
@@ -66,14 +66,16 @@ inline EffectPattern lever_of(const std::vector<DrivenRecording>& recordings) {
   return result;
 }
 
-inline EffectParameters border_of(const std::vector<DrivenRecording>& recordings,
-                                  const Days& days) {
+inline estimation::EffectParameters border_of(const std::vector<DrivenRecording>& recordings,
+                                              const Days& days) {
   if (days.lever) return {lever_of(recordings)};
-  return days.effects ? common_error_columns(recordings, days.model.robot) : EffectParameters();
+  return days.effects ? estimation::common_error_columns(recordings, days.model.robot)
+                      : estimation::EffectParameters();
 }
 
-inline std::vector<KnownPlace> known_of(const DrivenRecording& recording, const Model& model) {
-  std::vector<KnownPlace> known;
+inline std::vector<estimation::KnownPlace> known_of(const DrivenRecording& recording,
+                                                    const Model& model) {
+  std::vector<estimation::KnownPlace> known;
   for (const SurveyPoint& one : recording.survey) {
     known.push_back(
         {one.landmark, {one.x, one.y}, model.noise.survey, one.heading, model.noise.yaw});
@@ -82,8 +84,8 @@ inline std::vector<KnownPlace> known_of(const DrivenRecording& recording, const 
 }
 
 /// A day's rows, laid on the map that there is.
-inline SessionRows rows_of(const DrivenRecording& recording, const Days& days,
-                           const SummarisedSessions& map) {
+inline estimation::SessionRows rows_of(const DrivenRecording& recording, const Days& days,
+                                       const estimation::SummarisedSessions& map) {
   DrivenRecording laid = recording;
   if (map.sessions() > 0) {
     laid.survey.clear();
@@ -94,14 +96,14 @@ inline SessionRows rows_of(const DrivenRecording& recording, const Days& days,
           {map.landmarks()[k], at.x(), at.y(), 0.02, turned ? *turned : std::nan("")});
     }
   }
-  SessionRows rows;
-  rows.problem = make_problem({laid}, days.model);
+  estimation::SessionRows rows;
+  rows.problem = estimation::make_problem({laid}, days.model);
   rows.border = border_of({laid}, days);
-  const RecordingGauge gauge = choose_gauge(rows.problem);
+  const estimation::RecordingGauge gauge = estimation::choose_gauge(rows.problem);
   rows.tells_direction = !gauge.hold_heading;
   rows.tells_position = !gauge.hold_landmark;
-  rows.state = adjust(rows.problem, rows.border).state;
-  drop_survey(rows);
+  rows.state = estimation::adjust(rows.problem, rows.border).state;
+  estimation::drop_survey(rows);
   return rows;
 }
 

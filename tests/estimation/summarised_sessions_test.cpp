@@ -19,6 +19,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::summarised_sessions_test {
+using namespace estimation;
 namespace {
 
 using testing::border_of;

@@ -18,6 +18,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::triangulation_test {
+using namespace estimation;
 namespace {
 
 std::vector<Vector2> line(const Vector2& from, const Vector2& to, int count) {

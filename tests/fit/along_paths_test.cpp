@@ -37,11 +37,11 @@ TEST(AlongPaths, ALandmarkWithoutAPlaceLiesWhereItIsSeen) {
   const Model model;
   const std::vector<DrivenRecording> recordings =
       with_wheels(std::vector<Recording>{recording}, model.robot);
-  const RecordingProblem problem = make_problem(recordings, model, {});
-  const std::vector<SessionPath> paths{
+  const estimation::RecordingProblem problem = estimation::make_problem(recordings, model, {});
+  const std::vector<fitting::SessionPath> paths{
       {Pose(), dead_reckoned_path(recordings[0].drive, model.robot, model.noise)}};
-  const RecordingState state =
-      along_paths(problem, recordings, paths, {{"known", Vector2(30.0, 40.0)}});
+  const estimation::RecordingState state =
+      fitting::along_paths(problem, recordings, paths, {{"known", Vector2(30.0, 40.0)}});
   ASSERT_EQ(state.landmarks.size(), 4U);
   ASSERT_EQ(state.poses.size(), problem.poses.size());
   for (int k = 0; k < problem.landmark_count(); ++k) {

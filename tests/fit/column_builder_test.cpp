@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::column_builder_test {
+using namespace fitting;
 namespace {
 
 TEST(ColumnBuilder, AgreesWithTheBorderOfTheAdjustmentInEveryChannel) {
@@ -38,7 +39,7 @@ TEST(ColumnBuilder, AgreesWithTheBorderOfTheAdjustmentInEveryChannel) {
     effect.shape = {"1", "sin(heading)", "speed", "t"};
     EffectColumns both = effect_columns({fit.model.effects[0], effect}, context);
     both.border[0].held = 0.01;
-    RecordingSystem system(fit.problem, both.border);
+    estimation::RecordingSystem system(fit.problem, both.border);
     system.linearise(fit.adjustment.state, Eigen::VectorXd::Zero(4));
     const Eigen::MatrixXd columns = builder.columns(effect);
     ASSERT_EQ(columns.rows(), system.border().rows());

@@ -20,6 +20,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::corrected_odometry_drives_test {
+using namespace effects;
 namespace {
 
 using testing::other_drive;

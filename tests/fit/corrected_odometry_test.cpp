@@ -23,6 +23,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::corrected_odometry_test {
+using namespace drive;
 namespace {
 
 using testing::Equipment;
@@ -202,7 +203,7 @@ TEST(CorrectedOdometry, RatesAreLateAndNothingElse) {
 
 TEST(CorrectedOdometry, RatesOfARealRobotAreLateAndNothingElse) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");
-  const Dataset read = read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset6/Robot1"));
+  const Dataset read = datasets::read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset6/Robot1"));
   expect_late_only(testing::driven(read.recording, read.model.robot), read.model.robot,
                    Channel::travel, "speed", -0.1);
   expect_late_only(testing::driven(read.recording, read.model.robot), read.model.robot,

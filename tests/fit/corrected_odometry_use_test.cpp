@@ -85,7 +85,7 @@ TEST(CorrectedOdometry, NamesTheEffectThatCannotBeApplied) {
 }
 
 TEST(CorrectedOdometry, KnowsEveryVariable) {
-  for (const std::string& name : reserved_variables()) {
+  for (const std::string& name : recording::reserved_variables()) {
     EXPECT_EQ(message_of(with({own_effect(Channel::travel, name.c_str(), 0.1)})), "") << name;
   }
 }

@@ -16,6 +16,9 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::effect_columns_test {
+using namespace estimation;
+using namespace effects;
+using namespace fitting;
 namespace {
 
 using testing::invert;

@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::excluded_test {
+using namespace validation;
 namespace {
 
 using testing::simulate_recording;

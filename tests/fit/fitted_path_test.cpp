@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::fitted_path_test {
+using namespace fitting;
 namespace {
 
 using testing::disturbed_cases;
@@ -63,7 +64,7 @@ TEST(FittedPath, WhatIsMissingAtANodeIsNoiseOfTheWheelsThatAddsUpToIt) {
   const Model model = inverted_model();
   const std::vector<DrivenRecording> recordings = {simulated.recording};
   const FitState fit = fit_recordings(recordings, model);
-  RecordingState state = fit.adjustment.state;
+  estimation::RecordingState state = fit.adjustment.state;
   // The end of a drive, and with it the next turn on the spot.
   constexpr std::size_t kMoved = 4;
   for (const std::size_t k : {kMoved, kMoved + 1}) {
@@ -90,7 +91,7 @@ TEST(FittedPath, WhatIsMissingAtANodeIsNoiseOfTheWheelsThatAddsUpToIt) {
   }
   EXPECT_GT(most, 1e-4);
   EXPECT_LT(farthest, 1e-3);  // what turns on the spot and rests cannot take up is spread evenly
-  const std::size_t at = row_at(drive, fit.problem.poses[kMoved].t);
+  const std::size_t at = drive::row_at(drive, fit.problem.poses[kMoved].t);
   EXPECT_NEAR(path.ends[at].x, state.poses[kMoved].x, 1e-9);
   EXPECT_NEAR(path.ends[at].y, state.poses[kMoved].y, 1e-9);
   EXPECT_NEAR(std::remainder(path.ends[at].heading - state.poses[kMoved].heading, 2.0 * M_PI), 0.0,

@@ -20,6 +20,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::fixes_test {
+using namespace estimation;
 namespace {
 
 using testing::expect_right;
@@ -103,7 +104,7 @@ TEST(Fixes, WrongOnesAreLeftOutAndNamed) {
       wrong.insert(fix.t);
     }
     const ModelFit fit = fit_model({drive.recording}, drive.model, gated());
-    const FitState& state = *fit.state;
+    const fitting::FitState& state = *fit.state;
     std::set<double> left_out;
     for (const int k : state.adjustment.left_out) {
       const Measurement& one = state.problem.measurements[idx(k)];
@@ -278,7 +279,7 @@ TEST(Fixes, AreReplicatedWithTheRest) {
   model.effects = mounted(0.0, 0.0, 0.0);
   const ModelFit fit = fit_model({drive.recording}, model);
   const std::vector<DrivenRecording> again =
-      replicated({testing::driven(drive.recording)}, *fit.state, 4);
+      fitting::replicated({testing::driven(drive.recording)}, *fit.state, 4);
   const ModelFit second = fit_model(again, fit.model);
   EXPECT_LT(std::abs(second.chi2 - second.dof), 5.0 * std::sqrt(2.0 * second.dof));
   for (std::size_t e = 0; e < 3; ++e) {

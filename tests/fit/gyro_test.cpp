@@ -25,6 +25,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::gyro_test {
+using namespace fitting;
+using namespace estimation;
 namespace {
 
 struct World {
@@ -107,7 +109,7 @@ TEST(Gyro, ColumnsAreThoseOfOtherReadings) {
   const auto taken = [&](double bias, double scale) {
     DrivenRecording other = exact;
     for (double& rate : other.drive.yaw_rate) rate = rate / (1.0 + scale) + bias;
-    return with_gyro({other}, model.robot, model.noise);
+    return odometry::with_gyro({other}, model.robot, model.noise);
   };
   const auto residuals = [&](const std::vector<DrivenRecording>& recordings,
                              const RecordingState& state) {

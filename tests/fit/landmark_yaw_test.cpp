@@ -180,7 +180,7 @@ TEST(LandmarkYaw, FloorCodesSayWhereTheRobotStands) {
   const Vector2 code(-0.03, 0.025);  // in the robot's axes: its camera sits askew
   for (std::size_t k = 0; k < drive.recording.sightings.size(); ++k) {
     Sighting& one = drive.recording.sightings[k];
-    place_by_code(code, one);
+    recording::place_by_code(code, one);
   }
   // All landmarks lie where the camera was: a lever takes exactly that up.
   Model model = drive.model;

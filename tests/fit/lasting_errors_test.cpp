@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::lasting_errors_test {
+using namespace fitting;
 namespace {
 
 /// Now faster, now slower: of a steady circle a delay would turn the map, and no more. rad

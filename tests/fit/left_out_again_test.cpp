@@ -45,7 +45,7 @@ TEST(LeftOut, ComesBackUnderTheNoiseThatThereIsButForWhatIsWrong) {
   truth.noise.left *= 2.0;
   truth.noise.right *= 2.0;
   truth.noise.compass *= 2.0;
-  const ModelFit again = refit(recordings, truth, stated);
+  const ModelFit again = fitting::refit(recordings, truth, stated);
   EXPECT_EQ(again.left_out.size(), 1U);
   // As if it had been known from the start.
   const ModelFit known = fit_model(recordings, truth, gated());

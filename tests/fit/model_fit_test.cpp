@@ -18,6 +18,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::model_fit_test {
+using namespace fitting;
 namespace {
 
 using testing::Disturbance;

@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::noise_screening_test {
+using namespace fitting;
+using namespace estimation;
 namespace {
 
 std::vector<ScreenedNoise> screened(const DrivenRecording& recording, const Model& model) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::noise_search_test {
+using namespace fitting;
 namespace {
 
 Eigen::VectorXd free_of_bounds(Eigen::VectorXd x) {

@@ -19,6 +19,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::other_drives_test {
+using namespace estimation;
 namespace {
 
 using testing::after;
@@ -97,12 +98,12 @@ TEST(Steering, LeavesShapesAsTheyWereRead) {
   model.effects = {{"offset", Channel::steer, {"1"}, {0.2}, false}};
   const DrivenRecording recording = driven_by(drive, drive.wheels);
   const std::vector<DrivenRecording> steered_ones =
-      steered({recording}, model.effects, model.robot, {});
+      fitting::steered({recording}, model.effects, model.robot, {});
   const MotionRows& turned = steered_ones.front().drive;
   ASSERT_NE(turned.turn, recording.drive.turn);
   const std::vector<Pose> path(turned.rows());
-  const RowVariables before = row_variables(recording.drive, model.robot, Pose(), path, 0);
-  const RowVariables now = row_variables(turned, model.robot, Pose(), path, 0);
+  const RowVariables before = drive::row_variables(recording.drive, model.robot, Pose(), path, 0);
+  const RowVariables now = drive::row_variables(turned, model.robot, Pose(), path, 0);
   for (const auto& [name, values] : before) {
     for (std::size_t row = 0; row < values.size(); ++row) {
       ASSERT_NEAR(now.at(name)[row], values[row], 1e-12) << name;
@@ -122,7 +123,7 @@ TEST(OtherDrivesColumns, AreThoseOfDifferences) {
     std::vector<Channel> channels;
     for (const ChannelFacts& one : trussmap::channels()) {
       const bool steers = one.channel == Channel::steer || one.channel == Channel::steer_gain;
-      if ((wheel_of(one.channel) || steers) && is_of_drive(one.channel, robot)) {
+      if ((wheel_of(one.channel) || steers) && effects::is_of_drive(one.channel, robot)) {
         channels.push_back(one.channel);
       }
     }
@@ -142,9 +143,10 @@ TEST(OtherDrivesColumns, AreThoseOfDifferences) {
       const Eigen::Vector3d expected =
           (8.0 * (end(kStep) - end(-kStep)) - end(2.0 * kStep) + end(-2.0 * kStep)) /
           (12.0 * kStep);
-      std::vector<DrivePattern> patterns;
+      std::vector<effects::DrivePattern> patterns;
       for (std::size_t row = 0; row < here.rows(); ++row) {
-        patterns.push_back(drive_pattern(channel, 1.0, shown_motion(here, row, robot)));
+        patterns.push_back(
+            effects::drive_pattern(channel, 1.0, drive::shown_motion(here, row, robot)));
       }
       const SegmentWithEffects found =
           segment_motion(segment_rows(here, 5.0, 17.3), {&patterns}, Eigen::VectorXd::Zero(1));

@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::replicated_recording_test {
+using namespace fitting;
 namespace {
 
 struct Fitted {

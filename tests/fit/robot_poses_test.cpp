@@ -99,7 +99,7 @@ TEST(AdjustedPoses, AreTheFitsWithItsCovariances) {
     const SimulatedRecording world = simulated(compass, 5);
     const ModelFit fit = fit_model({world.recording}, world.model);
     const std::vector<TimedPose> poses = adjusted_poses(fit);
-    const FitState& state = *fit.state;
+    const fitting::FitState& state = *fit.state;
     ASSERT_EQ(poses.size(), world.recording.drive.rows() + 1);
     int compared = 0;
     for (std::size_t k = 0; k < state.problem.poses.size(); k += 7) {
@@ -112,8 +112,8 @@ TEST(AdjustedPoses, AreTheFitsWithItsCovariances) {
       EXPECT_NEAR(at->estimate.pose.x, pose.x, 1e-6);
       EXPECT_NEAR(at->estimate.pose.heading, pose.heading, 1e-6);
       const Eigen::MatrixXd covariance =
-          joint_covariance(state.problem, state.columns.border, state.adjustment,
-                           {state.problem.pose_node(static_cast<int>(k))});
+          estimation::joint_covariance(state.problem, state.columns.border, state.adjustment,
+                                       {state.problem.pose_node(static_cast<int>(k))});
       EXPECT_LT((at->estimate.covariance - covariance.topLeftCorner<3, 3>()).norm(),
                 1e-6 * covariance.norm() + 1e-12)
           << "t = " << t;

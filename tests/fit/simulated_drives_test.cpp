@@ -95,7 +95,7 @@ TEST_P(SimulatedDrives, EffectsWithTheirCoefficientsLeaveNothing) {
   int tried = 0;
   for (const Case& one : cases()) {
     const Effect effect = catalogue_effect(one.name, one.values);
-    if (!is_of_drive(effect.channel, robot.geometry)) continue;
+    if (!effects::is_of_drive(effect.channel, robot.geometry)) continue;
     World world = simulated(robot, {effect});
     const double without = chi2_of(world);
     world.model.effects = {effect};

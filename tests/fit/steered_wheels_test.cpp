@@ -20,6 +20,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::steered_wheels_test {
+using namespace drive;
+using namespace effects;
 namespace {
 
 constexpr double kLength = 1.3;  // m
@@ -139,8 +141,8 @@ TEST(SteeredFit, ShortensStepsThatLeaveAWheelNoWay) {
   // The start itself was none.
   const std::vector<DrivenRecording> driven =
       with_wheels(std::vector{made.drive.recording}, model.robot);
-  EXPECT_FALSE(leave_a_way(model.effects, driven, model.robot, {}));
-  EXPECT_TRUE(leave_a_way(fit.model.effects, driven, model.robot, {}));
+  EXPECT_FALSE(fitting::leave_a_way(model.effects, driven, model.robot, {}));
+  EXPECT_TRUE(fitting::leave_a_way(fit.model.effects, driven, model.robot, {}));
 }
 
 /// The same, held as they are: no row of the robot's can be driven so.

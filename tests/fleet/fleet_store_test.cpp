@@ -88,7 +88,7 @@ TEST(FleetStore, OtherTablesAndDamagedCellsAreRefused) {
   const std::string whole = read_file(file);
   const auto refused = [&](const std::string& statements, const std::string& said) {
     write_file(file, whole);
-    Database(file, Database::Access::write).run(statements);
+    store::Database(file, store::Database::Access::write).run(statements);
     expect_complaint([&] { static_cast<void>(read_fleet(file)); }, file.string() + ": " + said);
     expect_complaint([&] { static_cast<void>(merge_fleets(scratch.path() / "out.db", {file})); },
                      said);

@@ -19,6 +19,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::fleet_test {
+using namespace fitting;
+using namespace statistics;
 namespace {
 
 /// A surveyed 3x3 mesh with landmark names of its own.
@@ -57,7 +59,7 @@ TEST(Fleet, SumsSayWhatAllRecordingsTogetherSay) {
   FitterOptions how = fitter_options({});
   how.still_offset = 1e-7;
   const FitState fit = fit_recordings(recordings, model, how);
-  const ScoreTest joint(fit);
+  const criticism::ScoreTest joint(fit);
   std::vector<Effect> effects;
   for (const PooledTest& one : pooled) {
     Effect effect;
@@ -66,10 +68,10 @@ TEST(Fleet, SumsSayWhatAllRecordingsTogetherSay) {
     effect.shape.assign(one.shape.begin(), one.shape.end());
     effects.push_back(effect);
   }
-  const std::vector<Score> scores = joint.test(effects);
+  const std::vector<criticism::Score> scores = joint.test(effects);
   int seen = 0;
   for (std::size_t k = 0; k < pooled.size(); ++k) {
-    const Score& score = scores[k];
+    const criticism::Score& score = scores[k];
     ASSERT_EQ(pooled[k].dof, score.dof) << pooled[k].effect;
     if (score.dof == 0) continue;
     ++seen;

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 namespace trussmap::fuzz {
+using namespace logs;
 namespace {
 
 namespace fs = std::filesystem;

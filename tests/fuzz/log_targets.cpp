@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 namespace trussmap::fuzz {
+using namespace logs;
 namespace {
 
 namespace fs = std::filesystem;

@@ -21,6 +21,7 @@
 #include <vector>
 
 namespace trussmap::fuzz {
+using namespace datasets;
 namespace {
 
 namespace fs = std::filesystem;

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::landmark_conversion_test {
+using namespace io;
 namespace {
 
 const Matrix2 kCovariance = (Matrix2() << 0.04, 0.01, 0.01, 0.09).finished();

@@ -142,7 +142,7 @@ TEST(CsvNumber, ReadsBackToTheSameNumber) {
     const std::uint64_t bits = random();
     std::memcpy(&value, &bits, sizeof value);
     if (!std::isfinite(value)) continue;
-    EXPECT_EQ(std::stod(csv_number(value) == "-0" ? "-0.0" : csv_number(value)), value);
+    EXPECT_EQ(std::stod(io::csv_number(value) == "-0" ? "-0.0" : io::csv_number(value)), value);
   }
 }
 

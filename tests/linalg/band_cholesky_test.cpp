@@ -19,7 +19,7 @@ TEST(BandMatrix, SolvesWhatADenseFactorSolves) {
   for (const int n : {1, 2, 7, 40, 150}) {
     for (const int band : {0, 1, 5, 33, 200}) {
       Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
-      BandMatrix banded;
+      linalg::BandMatrix banded;
       banded.resize(n, band);
       for (int c = 0; c < n; ++c) {
         for (int r = c; r <= std::min(n - 1, c + band); ++r) {
@@ -38,7 +38,7 @@ TEST(BandMatrix, SolvesWhatADenseFactorSolves) {
 }
 
 TEST(BandMatrix, HoldsWhatIsFreeToMove) {
-  BandMatrix A;
+  linalg::BandMatrix A;
   A.resize(3, 1);  // two unknowns tied to each other, and one to nothing
   A.add(0, 0, 4.0);
   A.add(1, 0, -4.0);

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::block_system_test {
+using namespace linalg;
 namespace {
 
 /// Nodes of 3, 2, held, 3, 2 unknowns; node 2 is held, nodes 0 and 3 are paired twice.

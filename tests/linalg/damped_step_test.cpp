@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::damped_step_test {
+using namespace linalg;
 namespace {
 
 /// Two nodes of two unknowns: A is [4 1; 1 3] and `last` on the diagonal, coupled a little.

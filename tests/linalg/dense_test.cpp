@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::dense_test {
+using namespace linalg;
 namespace {
 
 /// Three springs in a row between four joints, the first held by a fourth of this stiffness.

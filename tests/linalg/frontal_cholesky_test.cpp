@@ -17,6 +17,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::frontal_cholesky_test {
+using namespace linalg;
 namespace {
 
 /// Nodes in the plane, each tied to some near ones; sizes of 1 to `largest` unknowns.

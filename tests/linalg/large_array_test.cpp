@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::large_array_test {
+using namespace linalg;
 namespace {
 
 TEST(LargeArray, HoldsAsManyNumbersAsAsked) {

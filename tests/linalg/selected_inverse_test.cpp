@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::selected_inverse_test {
+using namespace linalg;
 namespace {
 
 /// A chain with some chords, as a robot's poses are.

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::sparse_cholesky_test {
+using namespace linalg;
 namespace {
 
 /// Lower triangle of a sum of (2 x 1)-blocked springs between random nodes, those of a tree among

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::updatable_factor_test {
+using namespace linalg;
 namespace {
 
 class Sequence {

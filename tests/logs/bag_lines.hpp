@@ -24,30 +24,30 @@
 
 namespace trussmap::testing {
 
-inline void add_lines(std::string& text, const FieldRef& field, const std::string& path) {
-  const Field& one = field.field();
+inline void add_lines(std::string& text, const logs::FieldRef& field, const std::string& path) {
+  const logs::Field& one = field.field();
   switch (field.kind()) {
-    case FieldKind::number:
+    case logs::FieldKind::number:
       text += fmt::format(" {} number {:016x}\n", path, std::bit_cast<std::uint64_t>(one.number));
       break;
-    case FieldKind::integer:
+    case logs::FieldKind::integer:
       text += fmt::format(" {} integer {}\n", path, one.integer);
       break;
-    case FieldKind::text:
+    case logs::FieldKind::text:
       text += " " + path + " text ";
       for (const char c : one.text) text += fmt::format("{:02x}", static_cast<unsigned char>(c));
       text += "\n";
       break;
-    case FieldKind::list: {
+    case logs::FieldKind::list: {
       text += fmt::format(" {} list {}\n", path, one.length);
       std::size_t k = 0;
-      for (const FieldRef& child : field.children()) {
+      for (const logs::FieldRef& child : field.children()) {
         add_lines(text, child, fmt::format("{}[{}]", path, k++));
       }
       break;
     }
-    case FieldKind::group:
-      for (const FieldRef& child : field.children()) {
+    case logs::FieldKind::group:
+      for (const logs::FieldRef& child : field.children()) {
         const std::string name(child.name());
         add_lines(text, child, path.empty() ? name : path + "." + name);
       }
@@ -58,15 +58,15 @@ inline void add_lines(std::string& text, const FieldRef& field, const std::strin
 struct ReadLog {
   std::string lines;
   std::string error;  ///< of an InputError
-  LogEnd end;
+  logs::LogEnd end;
 };
 
 template <typename Read>
 ReadLog read_lines(const Read& read) {
   ReadLog result;
-  LogVisit visit;
-  visit.wanted = [](const LogTopic&) { return true; };
-  visit.message = [&result](const LogMessage& message) {
+  logs::LogVisit visit;
+  visit.wanted = [](const logs::LogTopic&) { return true; };
+  visit.message = [&result](const logs::LogMessage& message) {
     result.lines +=
         fmt::format("{} {} {}\n", message.topic.name, message.log_time, message.publish_time);
     add_lines(result.lines, message.fields, "");
@@ -80,7 +80,8 @@ ReadLog read_lines(const Read& read) {
 }
 
 inline ReadLog read_lines(const std::filesystem::path& path) {
-  return read_lines([&path](const LogVisit& visit) { return read_message_log(path, visit); });
+  return read_lines(
+      [&path](const logs::LogVisit& visit) { return logs::read_message_log(path, visit); });
 }
 
 inline std::string content_of(const std::filesystem::path& file) {

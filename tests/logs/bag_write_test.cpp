@@ -25,6 +25,7 @@
 #include <nlohmann/json.hpp>
 
 namespace trussmap::bag_write_test {
+using namespace logs;
 namespace {
 
 using nlohmann::json;

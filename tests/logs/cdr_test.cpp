@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::cdr_test {
+using namespace logs;
 namespace {
 
 using std::string_literals::operator""s;

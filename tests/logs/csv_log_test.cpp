@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::csv_log_test {
+using namespace logs;
 namespace {
 
 using testing::ScratchFolder;

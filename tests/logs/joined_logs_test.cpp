@@ -20,6 +20,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::joined_logs_test {
+using namespace logs;
 namespace {
 
 namespace fs = std::filesystem;

@@ -22,25 +22,25 @@
 namespace trussmap::testing {
 
 /// {x=0.5 n=12i tag='a' list=[1i 2i]/2}: numbers with all their digits, lists with their lengths.
-inline std::string in_text(FieldRef field) {
+inline std::string in_text(logs::FieldRef field) {
   const auto parts = [&field](const char* open, const char* close) {
     std::string text = open;
-    for (const FieldRef& one : field.children()) {
+    for (const logs::FieldRef& one : field.children()) {
       text += (text.size() > 1 ? " " : "") + std::string(one.name()) +
               (one.name().empty() ? "" : "=") + in_text(one);
     }
     return text + close;
   };
   switch (field.kind()) {
-    case FieldKind::group:
+    case logs::FieldKind::group:
       return parts("{", "}");
-    case FieldKind::list:
+    case logs::FieldKind::list:
       return parts("[", "]/") + std::to_string(field.field().length);
-    case FieldKind::text:
+    case logs::FieldKind::text:
       return "'" + std::string(field.field().text) + "'";
-    case FieldKind::integer:
+    case logs::FieldKind::integer:
       return std::to_string(field.field().integer) + "i";
-    case FieldKind::number:
+    case logs::FieldKind::number:
       break;
   }
   char text[40];
@@ -50,14 +50,14 @@ inline std::string in_text(FieldRef field) {
 
 struct LoggedMessages {
   std::vector<std::string> lines;  ///< "TOPIC TIME FIELDS", without the time where there is none
-  LogEnd end;
+  logs::LogEnd end;
   std::string error;        ///< behind the file's name; empty: none
   std::size_t longest = 0;  ///< list or text
 };
 
-inline std::size_t longest_in(FieldRef field) {
+inline std::size_t longest_in(logs::FieldRef field) {
   std::size_t longest = std::max(field.field().length, field.field().text.size());
-  for (const FieldRef& one : field.children()) longest = std::max(longest, longest_in(one));
+  for (const logs::FieldRef& one : field.children()) longest = std::max(longest, longest_in(one));
   return longest;
 }
 
@@ -65,10 +65,10 @@ template <typename Reader>
 LoggedMessages messages_of(const Reader& reader, const std::filesystem::path& file,
                            std::size_t elements = 4096) {
   LoggedMessages found;
-  LogVisit visit;
+  logs::LogVisit visit;
   visit.elements = elements;
-  visit.wanted = [](const LogTopic&) { return true; };
-  visit.message = [&found](const LogMessage& message) {
+  visit.wanted = [](const logs::LogTopic&) { return true; };
+  visit.message = [&found](const logs::LogMessage& message) {
     const std::string time = message.has_time ? " " + std::to_string(message.log_time) : "";
     found.lines.push_back(message.topic.name + time + " " + in_text(message.fields));
     found.longest = std::max(found.longest, longest_in(message.fields));

@@ -17,6 +17,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::log_pieces_test {
+using namespace logs;
 namespace {
 
 constexpr std::int64_t kSecond = 1000000000;

@@ -24,6 +24,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::mat_file_test {
+using namespace logs;
 namespace {
 
 using testing::messages_of;

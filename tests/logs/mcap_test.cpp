@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::mcap_test {
+using namespace logs;
 namespace {
 
 using testing::ReadLog;

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::message_definitions_test {
+using namespace logs;
 namespace {
 
 namespace fs = std::filesystem;

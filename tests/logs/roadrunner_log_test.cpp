@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::roadrunner_log_test {
+using namespace logs;
 namespace {
 
 using testing::bytes_of;

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::ros1_bag_test {
+using namespace logs;
 namespace {
 
 namespace fs = std::filesystem;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::ros2_definition_test {
+using namespace logs;
 namespace {
 
 const std::string kLine(80, '=');

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::rosbag2_test {
+using namespace logs;
 namespace {
 
 namespace fs = std::filesystem;

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::source_agreement_test {
+using namespace logs;
 namespace {
 
 using testing::ScratchFolder;

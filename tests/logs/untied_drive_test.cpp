@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::untied_drive_test {
+using namespace logs;
 namespace {
 
 namespace fs = std::filesystem;

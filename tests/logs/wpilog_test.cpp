@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::wpilog_test {
+using namespace logs;
 namespace {
 
 using testing::bytes_of;

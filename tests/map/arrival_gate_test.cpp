@@ -135,7 +135,7 @@ TEST(ArrivalGate, WhatContradictsAlikeComesBack) {
 /// freedom (2 log 2), the last fifty, and never below 1.
 TEST(ArrivalGate, IsAsMuchWiderAsTheMedianMisfitIsLarger) {
   const double median = 2.0 * std::log(2.0);
-  ArrivalGate gate(3.0);
+  map::ArrivalGate gate(3.0);
   for (int k = 0; k < 7; ++k) {
     gate.remember(16.0 * median);
     EXPECT_EQ(gate.scale(), 1.0);

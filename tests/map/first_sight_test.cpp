@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::first_sight_test {
+using namespace map;
 namespace {
 
 using Landmarks = std::vector<int>;

@@ -24,6 +24,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::graph_model_test {
+using namespace map;
 namespace {
 
 using Position = Vector2 Landmark::*;
@@ -150,12 +151,12 @@ TEST(GraphModel, ConnectedComponentsAreTheConnectedParts) {
     const auto index = get(boost::vertex_index, graph);
     const int count = boost::connected_components(
         graph, boost::make_iterator_property_map(component.begin(), index));
-    std::vector<NodePair> ties;
+    std::vector<linalg::NodePair> ties;
     ties.reserve(idx(graph.routes()));
     for (int k = 0; k < graph.routes(); ++k) {
       ties.push_back({graph.route(k).target, graph.route(k).source});
     }
-    const std::vector<int> part = connected_parts(kLandmarks, ties);
+    const std::vector<int> part = linalg::connected_parts(kLandmarks, ties);
     std::vector<int> lowest(idx(count), -1);  // of each component: met in ascending order
     for (int v = 0; v < kLandmarks; ++v) {
       int& named = lowest[idx(component[idx(v)])];
@@ -192,7 +193,7 @@ TEST(GraphModel, ShortestSpanningForestLeavesOutTheLongestOfEachLoop) {
   for (const RouteFrom e : forest) kept[idx(e.route)] = true;
   for (int left_out = 0; left_out < graph.routes(); ++left_out) {
     // Joined by shorter routes alone: then the route closes a loop in which it is the longest.
-    DisjointSets shorter(kLandmarks);
+    linalg::DisjointSets shorter(kLandmarks);
     for (int k = 0; k < graph.routes(); ++k) {
       if (graph.route(k).stretch < graph.route(left_out).stretch) {
         shorter.join(graph.route(k).source, graph.route(k).target);

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::linear_truss_test {
+using namespace map;
 namespace {
 
 /// A ring with chords, each route driven 1 to 4 times (seed).

@@ -24,6 +24,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::memory_file_test {
+using namespace map;
 namespace {
 
 namespace fs = std::filesystem;

@@ -41,7 +41,7 @@ void expect_nearest_of_all(double step) {
   std::uniform_real_distribution<double> anywhere(0.0, 25.0);
   std::normal_distribution<double> normal;
   LandmarkGraph map;
-  NearestLandmarks nearest;
+  map::NearestLandmarks nearest;
   for (int k = 0; k < kLandmarks; ++k) {
     const Vector2 position(anywhere(random), anywhere(random));
     map.add_landmark(std::to_string(k), position);
@@ -67,7 +67,7 @@ TEST(NearestLandmarks, AreThoseOfALookAtAllHoweverLittleTheyMove) {
 
 TEST(NearestLandmarks, OfThoseEquallyFarTheLowestNumbersAreTaken) {
   LandmarkGraph map;
-  NearestLandmarks nearest;
+  map::NearestLandmarks nearest;
   for (int k = 0; k < 40; ++k) {
     const Vector2 position(k % 2 == 0 ? 1.0 : -1.0, 0.0);
     map.add_landmark(std::to_string(k), position);

@@ -48,9 +48,9 @@ TEST(RefinementStep, ForcesAndDisplacementsEqualTheReference) {
     const Vector2 present = vector2(c["nodes"][idx(j)]) - vector2(c["nodes"][idx(i)]);
     const double s = c["new_stretch"];
     const double angle = c["new_orientation"];
-    const RefinementLoads loads =
-        refinement_loads(present, s * Vector2(std::cos(angle), std::sin(angle)), stiffness_of(bar),
-                         adjacent(c, "adjacent_bar_at_i"), adjacent(c, "adjacent_bar_at_j"));
+    const map::RefinementLoads loads = map::refinement_loads(
+        present, s * Vector2(std::cos(angle), std::sin(angle)), stiffness_of(bar),
+        adjacent(c, "adjacent_bar_at_i"), adjacent(c, "adjacent_bar_at_j"));
     EXPECT_LE((loads.desired_i - vector2(c["desired_ui"])).norm(), kTolerance);
     EXPECT_LE((loads.desired_j - vector2(c["desired_uj"])).norm(), kTolerance);
     const double scale = 1.0 + loads.force_i.norm();
@@ -163,7 +163,7 @@ TEST(FirstSightChain, SeriesCompliancesEqualTheStiffnessMethod) {
     std::vector<Matrix2> stiffnesses;
     for (const json& bar : c["bars"]) stiffnesses.push_back(stiffness_of(bar));
     const auto u =
-        chain_displacements(stiffnesses, vector2(c["imposed"][std::to_string(joints - 1)]));
+        map::chain_displacements(stiffnesses, vector2(c["imposed"][std::to_string(joints - 1)]));
     for (int n = 1; n < joints; ++n) {
       EXPECT_LE((u[idx(n - 1)] - vector2(c["displacements"][idx(n)])).norm(), kTolerance);
     }

@@ -22,6 +22,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::scale_sums_test {
+using namespace map;
+using namespace truss;
 namespace {
 
 /// Landmarks met on a random way over a grid, bars where routes are, and groups along the way.

@@ -21,6 +21,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::wheeled_map_test {
+using namespace map;
 namespace {
 
 constexpr double kWheelbase = 0.34;  // m

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::change_detector_test {
+using namespace monitor;
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;

@@ -19,6 +19,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::leg_filter_test {
+using namespace monitor;
 namespace {
 
 struct Filtered {
@@ -34,7 +35,7 @@ Filtered filtered(const Recording& recording, const Model& model, Channel channe
   inputs.compass = recording.drive.has_compass();
   inputs.gyro = recording.drive.has_gyro();
   for (const Covariate& one : recording.drive.covariates) inputs.covariates.push_back(one.name);
-  OnlineOdometry odometry(model, inputs);
+  fitting::OnlineOdometry odometry(model, inputs);
   LegOdometry leg({channel});
   LegFilter filter({}, landmarks, 1);
   filter.set_columns(1);
@@ -120,7 +121,7 @@ TEST(LegFilter, EffectsAreAsUncertainAsInTheFit) {
        {Channel::turn, Channel::difference, Channel::left, Channel::travel, Channel::drift}) {
     Drawn one = drawn(6, false, true);
     const Filtered sums = filtered(one.recording, one.model, channel, 9);
-    one.model.effects.push_back({"own", channel, {constant_shape()}, {}});
+    one.model.effects.push_back({"own", channel, {effects::constant_shape()}, {}});
     const ModelFit fit = fit_model({one.recording}, one.model);
     const double sd = fit.effects.front().sd.front();
     EXPECT_NEAR(1.0 / std::sqrt(sums.information), sd, 0.05 * sd) << name_of(channel);

@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::leg_odometry_test {
+using namespace monitor;
 namespace {
 
 /// Turns and arcs, of 40 rows (seed 4), with a gyro that disagrees.
@@ -38,7 +39,7 @@ const std::vector<Channel> kChannels{Channel::travel, Channel::left,       Chann
 LegReckoning driven(const Model& model, bool gyro, std::vector<Channel> channels) {
   OdometryInputs inputs;
   inputs.gyro = gyro;
-  OnlineOdometry odometry(model, inputs);
+  fitting::OnlineOdometry odometry(model, inputs);
   LegOdometry leg(std::move(channels));
   for (const WheelRow& row : some_rows(gyro)) {
     const CorrectedRow one = odometry.drive(row, {});
@@ -70,7 +71,7 @@ void expect_differences(bool gyro, const std::vector<Channel>& channels) {
     for (const int side : {0, 1}) {
       Model other = model;
       other.effects.push_back(
-          {"one", channels[k], {constant_shape()}, {side == 0 ? -kSmall : kSmall}});
+          {"one", channels[k], {effects::constant_shape()}, {side == 0 ? -kSmall : kSmall}});
       ends[static_cast<std::size_t>(side)] = driven(other, gyro, {});
     }
     const auto column = leg.by_channel.col(static_cast<Eigen::Index>(k));
@@ -100,7 +101,7 @@ TEST(LegOdometry, EffectsAreDerivativesBesideAGyroToo) {
 
 TEST(LegOdometry, ReadingsAreAveragedAtTheStart) {
   LegOdometry leg({Channel::drift});
-  RowMotion row = row_motion(BodyMotion{0.1, 0.0, 0.0}, 1.0, Robot());
+  drive::RowMotion row = drive::row_motion(BodyMotion{0.1, 0.0, 0.0}, 1.0, Robot());
   double turned = 0.0;
   for (int k = 0; k < 10; ++k) {  // readings wrap; the start reads 3.0
     row.body.turn = 0.1;

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::classical_test {
+using namespace odometry;
 namespace {
 
 constexpr double kDistance = 3.0;  // D, m

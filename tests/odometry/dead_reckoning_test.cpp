@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::dead_reckoning_test {
+using namespace odometry;
 namespace {
 
 /// Spin, straight, arc, reverse: 20 rows of 0.1 s each, wheel noise added if asked (seed 5).

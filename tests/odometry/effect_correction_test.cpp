@@ -28,7 +28,7 @@ DrivenRecording drive_about(bool compass) {
   robot.compass = compass;
   DrivenRecording recording =
       testing::driven(simulate_drive(mesh, tours.walk, {}, robot, 3).recording);
-  recording.survey = survey(mesh, 1e-6, 3);
+  recording.survey = simulation::survey(mesh, 1e-6, 3);
   return recording;
 }
 
@@ -53,7 +53,7 @@ TEST(EffectCorrection, RestoresTheRecordOfTheSoundRobot) {
   Model model;
   model.effects.push_back(catalogue_effect("wheel diameter ratio", {0.003}));
   model.effects.push_back(catalogue_effect("wheelbase", {1.0 / 1.03 - 1.0}));
-  const std::vector<DrivenRecording> corrected = without_effects({faulty}, model);
+  const std::vector<DrivenRecording> corrected = odometry::without_effects({faulty}, model);
   for (std::size_t row = 0; row < sound.drive.rows(); ++row) {
     EXPECT_NEAR(corrected[0].drive.pair.left[row], sound.drive.pair.left[row], 1e-12);
     EXPECT_NEAR(corrected[0].drive.pair.right[row], sound.drive.pair.right[row], 1e-12);
@@ -71,7 +71,7 @@ TEST(EffectCorrection, TheAnswerOfAPracticeRecordingImprovesItsReckoning) {
       testing::driven(read_recording(testing::shared("data/hidden/b")));
   Model model;
   model.effects.push_back(catalogue_effect("hard iron", {0.0305937, -0.0257687}));
-  EXPECT_LT(error_of(without_effects({recording}, model)), 0.7 * error_of({recording}));
+  EXPECT_LT(error_of(odometry::without_effects({recording}, model)), 0.7 * error_of({recording}));
 }
 
 }  // namespace

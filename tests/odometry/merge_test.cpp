@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::merge_test {
+using namespace odometry;
 namespace {
 
 constexpr double kWheelbase = 0.34;  // m

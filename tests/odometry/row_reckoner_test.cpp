@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::row_reckoner_test {
+using namespace odometry;
 namespace {
 
 Noise hazy(ProcessKind process, double length) {

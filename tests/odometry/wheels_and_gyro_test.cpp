@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::wheels_and_gyro_test {
+using namespace odometry;
 namespace {
 
 Noise noise_of(double left, double right, double gyro) {
@@ -36,7 +37,7 @@ TEST(WheelsAndGyro, AreTakenTogetherAsLeastSquaresHasIt) {
     const WheelTravel wheels{0.1 * unit(random), 0.1 * unit(random)};
     const double duration = 0.3;
     const double rate = unit(random);
-    const GyroShare share = gyro_share(body_motion(wheels, 0.4), rate, duration, noise,
+    const GyroShare share = gyro_share(drive::body_motion(wheels, 0.4), rate, duration, noise,
                                        arc_noise(wheels, duration, robot, noise));
 
     // d(path, turn)/d(left, right), and the two wheels' own variances.

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::parallel_for_test {
+using namespace parallel;
 namespace {
 
 class ParallelFor : public ::testing::Test {

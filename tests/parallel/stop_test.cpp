@@ -15,7 +15,7 @@ namespace {
 TEST(Stop, NobodyIsAskedWithoutAQuestion) {
   EXPECT_NO_THROW(stop_if_asked());
   std::size_t turns = 0;
-  parallel_for(100, [&](std::size_t) { ++turns; });
+  parallel::parallel_for(100, [&](std::size_t) { ++turns; });
   EXPECT_EQ(turns, 100U);
 }
 
@@ -26,7 +26,7 @@ TEST(Stop, ALoopEndsWhereTheAnswerIsYes) {
     return true;
   });
   std::size_t turns = 0;
-  EXPECT_THROW(parallel_for(100, [&](std::size_t) { ++turns; }), StoppedOnRequest);
+  EXPECT_THROW(parallel::parallel_for(100, [&](std::size_t) { ++turns; }), StoppedOnRequest);
   EXPECT_EQ(turns, 0U);
   EXPECT_THROW(stop_if_asked(), StoppedOnRequest);
   EXPECT_EQ(asked, 1);  // once yes, always yes
@@ -73,11 +73,11 @@ TEST(Stop, EndsALoopOnManyThreads) {
   const StopQuestion question([&] { return asked_to.load(); });
   std::atomic<std::size_t> turns = 0;
   asked_to = true;
-  EXPECT_THROW(parallel_for(100000,
-                            [&](std::size_t) {
-                              ++turns;
-                              std::this_thread::yield();
-                            }),
+  EXPECT_THROW(parallel::parallel_for(100000,
+                                      [&](std::size_t) {
+                                        ++turns;
+                                        std::this_thread::yield();
+                                      }),
                StoppedOnRequest);
   EXPECT_LT(turns, 100000U);
   set_threads(before);

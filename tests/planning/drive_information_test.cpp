@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::drive_information_test {
+using namespace planning;
 namespace {
 
 /// Two drives over all routes of 3 x 3 landmarks, with noise.
@@ -45,7 +46,7 @@ TEST_P(DriveInformationOf, TwoDrivesIsThatOfTheirJointFit) {
   const auto [surveyed, compass] = GetParam();
   const std::vector<DrivenRecording> drives = two_drives(surveyed, compass);
   const ModelFit both = fit_model(drives, Model());
-  const ScoreTest tests(*both.state);
+  const criticism::ScoreTest tests(*both.state);
   Eigen::MatrixXd columns(tests.system().rows(), 0);
   for (const Effect& one : kAsked) {
     const Eigen::MatrixXd own = tests.free_of_map(tests.columns(one));
@@ -72,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(Drives, DriveInformationOf,
 TEST(DriveInformation, OfOneRecordingIsThatOfItsScoreTests) {
   const std::vector<DrivenRecording> drives = two_drives(true, true);
   const ModelFit fit = fit_model(std::vector<DrivenRecording>{drives[0]}, Model());
-  const ScoreTest tests(*fit.state);
+  const criticism::ScoreTest tests(*fit.state);
   const Eigen::MatrixXd gram = gram_of(information_of(*fit.state, {kAsked, {}, true}));
   for (std::size_t k = 0; k < kAsked.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);

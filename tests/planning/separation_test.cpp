@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::separation_test {
+using namespace planning;
+using namespace statistics;
 namespace {
 
 /// Columns of 40 rows: two of an effect, one of its rival, one of what is fitted beside.

@@ -18,6 +18,7 @@
 #include <nlohmann/json.hpp>
 
 namespace trussmap::chart_test {
+using namespace plot;
 namespace {
 
 using nlohmann::json;

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::drive_charts_test {
+using namespace plot;
 namespace {
 
 using testing::other_drive;

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::effect_drawing_test {
+using namespace plot;
 namespace {
 
 Effect named(std::string_view name, Channel channel) {
@@ -29,7 +30,7 @@ std::string marks_of(const std::string& svg) {
 /// Or that of its kin, where its file says so.
 TEST(EffectDrawing, EveryEffectOfTheCatalogueHasItsOwn) {
   std::map<std::string, std::string> of;
-  for (const CatalogueRecord& record : catalogue_records()) {
+  for (const effects::CatalogueRecord& record : effects::catalogue_records()) {
     const CatalogueEntry& entry = record.entry;
     const std::string svg = effect_drawing(named(entry.name, entry.channel));
     ASSERT_NE(svg, "") << entry.name;
@@ -38,7 +39,7 @@ TEST(EffectDrawing, EveryEffectOfTheCatalogueHasItsOwn) {
     const auto [other, fresh] = of.emplace(marks_of(svg), which);
     EXPECT_TRUE(fresh || other->second == which)
         << entry.name << " is drawn like " << other->second;
-    const XmlElement root = parse_xml(svg, "drawing");
+    const io::XmlElement root = io::parse_xml(svg, "drawing");
     EXPECT_EQ(root.name, "svg");
     EXPECT_EQ(root.attribute("aria-label"), entry.name);
     ASSERT_NE(root.child("title"), nullptr);
@@ -89,7 +90,7 @@ TEST(Sketch, ArrowsEndWhereTheyPoint) {
   const std::string svg = sketch.svg("a \"title\" & <more>");
   EXPECT_NE(svg.find("M110.0,20.0L"), std::string::npos) << svg;
   EXPECT_NE(svg.find("a &lt; b &amp; c"), std::string::npos);
-  EXPECT_EQ(parse_xml(svg, "sketch").child("title")->text, "a \"title\" & <more>");
+  EXPECT_EQ(io::parse_xml(svg, "sketch").child("title")->text, "a \"title\" & <more>");
 }
 
 TEST(Sketch, PlacesBesideAreCounterClockwise) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::fit_charts_test {
+using namespace plot;
 namespace {
 
 SourceResiduals normal_sample(const char* source, std::size_t count, double sd) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::route_chart_test {
+using namespace plot;
 namespace {
 
 FittedMap triangle() {

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::svg_test {
+using namespace plot;
 namespace {
 
 Figure some_figure() {

@@ -34,8 +34,8 @@ void expect_equal(const std::vector<Pose>& found, const std::vector<Pose>& expec
 
 /// What a descent from the truth reaches: no start should do worse.
 double chi2_from_truth(const SyntheticGraph& world) {
-  PoseGraphSystem system(world.graph, choose_gauge(world.graph));
-  return descend(system, world.truth, {}).chi2;
+  pose_graph::PoseGraphSystem system(world.graph, pose_graph::choose_gauge(world.graph));
+  return pose_graph::descend(system, world.truth, {}).chi2;
 }
 
 TEST(Adjust, GivesTheExactGraphWithoutNoise) {

@@ -17,7 +17,7 @@ using testing::SyntheticGraph;
 TEST(Covariances, AreTheBlocksOfTheInverseNormalMatrix) {
   const SyntheticGraph world = landmark_walk(30, 3, 6, 4.0, {0.1, 0.05}, 12);
   const PoseGraphAdjustment result = adjust(world.graph);
-  PoseGraphSystem system(world.graph, choose_gauge(world.graph));
+  pose_graph::PoseGraphSystem system(world.graph, pose_graph::choose_gauge(world.graph));
   system.linearise(result.estimates);
   const Eigen::MatrixXd inverse =
       Eigen::MatrixXd(

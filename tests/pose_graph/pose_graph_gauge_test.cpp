@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::pose_graph_gauge_test {
+using namespace pose_graph;
 namespace {
 
 using testing::Measurer;
@@ -43,14 +44,14 @@ bool contains(const std::string& text, const std::string& part) {
 
 TEST(Gauge, HoldsTheFirstPoseOfAPlainGraph) {
   const SyntheticGraph world = chain(4);
-  EXPECT_EQ(choose_gauge(world.graph), (std::vector<std::uint8_t>{held_all, 0, 0, 0}));
+  EXPECT_EQ(choose_gauge(world.graph), (std::vector<std::uint8_t>{estimation::held_all, 0, 0, 0}));
 }
 
 TEST(Gauge, HoldsWhatTheFileFixesAndNothingElse) {
   SyntheticGraph world = chain(4);
   world.graph.vertices[2].fixed = true;
   world.graph.vertices[2].estimate = Pose{};
-  EXPECT_EQ(choose_gauge(world.graph), (std::vector<std::uint8_t>{0, 0, held_all, 0}));
+  EXPECT_EQ(choose_gauge(world.graph), (std::vector<std::uint8_t>{0, 0, estimation::held_all, 0}));
 }
 
 TEST(Gauge, HoldsAPositionOnlyWhereDisplacementsCarryTheDirection) {
@@ -68,7 +69,7 @@ TEST(Gauge, HoldsAPositionOnlyWhereDisplacementsCarryTheDirection) {
   world.graph.displacement_edges.push_back(measure.displacement_edge(world.truth, 2, 3));
   world.graph.displacement_edges[0].measured =
       rotation(0.7) * world.graph.displacement_edges[0].measured;  // the map is turned by 0.7
-  EXPECT_EQ(choose_gauge(world.graph), (std::vector<std::uint8_t>{held_position, 0, 0, 0}));
+  EXPECT_EQ(choose_gauge(world.graph), (std::vector<std::uint8_t>{estimation::held_position, 0, 0, 0}));
   const PoseGraphAdjustment result = adjust(world.graph);
   EXPECT_LT(result.chi2, 1e-20);
   EXPECT_NEAR(result.estimates[0].heading, 0.7, 1e-10);
@@ -80,8 +81,8 @@ TEST(Gauge, HoldsAHeadingBesideASinglePointThatTheFileFixes) {
   point.fixed = true;
   point.estimate = Pose{7.0, 8.0, 0.0};
   const std::vector<std::uint8_t> held = choose_gauge(world.graph);
-  EXPECT_EQ(held.front(), held_heading);
-  EXPECT_EQ(held.back(), held_all);
+  EXPECT_EQ(held.front(), estimation::held_heading);
+  EXPECT_EQ(held.back(), estimation::held_all);
   const PoseGraphAdjustment result = adjust(world.graph);
   EXPECT_LT(result.chi2, 1e-20);
   EXPECT_EQ(result.estimates.back().x, 7.0);

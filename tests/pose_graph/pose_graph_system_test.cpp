@@ -14,6 +14,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::pose_graph_system_test {
+using namespace linalg;
+using namespace pose_graph;
 namespace {
 
 Matrix3 random_information(std::mt19937_64& random) {
@@ -98,8 +100,8 @@ TEST_P(NormalEquations, AgreeWithCentralDifferences) {
   const double heading = GetParam();
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const PoseGraph graph = mixed_graph(seed);
-    std::vector<std::uint8_t> held(6, held_nothing);
-    held[0] = held_all;
+    std::vector<std::uint8_t> held(6, estimation::held_nothing);
+    held[0] = estimation::held_all;
     PoseGraphSystem system(graph, held);
     const std::vector<Pose> at = random_estimates(3.0, heading, seed + 100);
     const double chi2 = system.linearise(at);
@@ -123,18 +125,19 @@ INSTANTIATE_TEST_SUITE_P(Headings, NormalEquations,
 TEST(PoseGraphSystem, PinsHalfHeldPosesByAnEquationOfTheirOwn) {
   const PoseGraph graph = mixed_graph(3);
   const std::vector<Pose> at = random_estimates(3.0, 1.0, 3);
-  for (const std::uint8_t half : {held_position, held_heading}) {
-    std::vector<std::uint8_t> held(6, held_nothing);
+  for (const std::uint8_t half : {estimation::held_position, estimation::held_heading}) {
+    std::vector<std::uint8_t> held(6, estimation::held_nothing);
     held[1] = half;
-    held[5] = held_position;
+    held[5] = estimation::held_position;
     PoseGraphSystem system(graph, held);
     system.linearise(at);
     Eigen::MatrixXd H = Eigen::MatrixXd(system.normal_equations().matrix());
     H = Eigen::MatrixXd(H.selfadjointView<Eigen::Lower>());
     Eigen::MatrixXd J = jacobian(graph, system, at);
     const Eigen::VectorXd e = whitened(graph, at);
-    const int begin = system.normal_equations().offset(1) + (half == held_position ? 0 : 2);
-    const int count = half == held_position ? 2 : 1;
+    const int begin =
+        system.normal_equations().offset(1) + (half == estimation::held_position ? 0 : 2);
+    const int count = half == estimation::held_position ? 2 : 1;
     J.middleCols(begin, count).setZero();
     Eigen::MatrixXd expected = J.transpose() * J;
     expected.diagonal().segment(begin, count).setOnes();
@@ -145,8 +148,8 @@ TEST(PoseGraphSystem, PinsHalfHeldPosesByAnEquationOfTheirOwn) {
 
 TEST(PoseGraphSystem, WithHeadingsHeldOneStepIsTheBestOfAllPositions) {
   const PoseGraph graph = mixed_graph(4);
-  std::vector<std::uint8_t> held(6, held_nothing);
-  held[0] = held_all;
+  std::vector<std::uint8_t> held(6, estimation::held_nothing);
+  held[0] = estimation::held_all;
   PoseGraphSystem system(graph, held);
   std::vector<Pose> at = random_estimates(3.0, 1.0, 4);
   system.linearise(at, true);
@@ -158,8 +161,8 @@ TEST(PoseGraphSystem, WithHeadingsHeldOneStepIsTheBestOfAllPositions) {
 
 TEST(PoseGraphSystem, StrainEnergyIsTheQuadraticFormOfTheNormalMatrix) {
   const PoseGraph graph = mixed_graph(5);
-  std::vector<std::uint8_t> held(6, held_nothing);
-  held[2] = held_all;
+  std::vector<std::uint8_t> held(6, estimation::held_nothing);
+  held[2] = estimation::held_all;
   PoseGraphSystem system(graph, held);
   const std::vector<Pose> at = random_estimates(3.0, 1.0, 5);
   system.linearise(at);

@@ -14,8 +14,8 @@ namespace {
 
 TEST(ContentHash, IsThatOfTheStandardsExamples) {
   // FIPS 180-4: ba7816bf 8f01cfea ... and 248d6a61 d20638b8 ...
-  EXPECT_EQ(content_hash("abc"), "sha256-ungWv48Bz+pBQUDeXa4iI7ADYaOWF3qctBD/YfIAFa0=");
-  EXPECT_EQ(content_hash("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+  EXPECT_EQ(report::content_hash("abc"), "sha256-ungWv48Bz+pBQUDeXa4iI7ADYaOWF3qctBD/YfIAFa0=");
+  EXPECT_EQ(report::content_hash("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
             "sha256-JI1qYdIGOLjlwCaTDD5gOaM85Flk/yFn9uzt1BnbBsE=");
 }
 
@@ -33,7 +33,7 @@ TEST(ContentHash, IsThatOfHashlibAtEveryEdgeOfABlock) {
       {1000000, "zcduXJkU+5KBocfihNc+Z/GAmkiklyAOBG05zMcRLNA="},
   };
   for (const auto& [length, hash] : expected) {
-    EXPECT_EQ(content_hash(std::string(length, 'a')), "sha256-" + hash) << length;
+    EXPECT_EQ(report::content_hash(std::string(length, 'a')), "sha256-" + hash) << length;
   }
 }
 

@@ -189,7 +189,7 @@ void read_for_contradictions(const std::string& text, const Known& known,
 /// A verdict and the answers below it.
 std::string sentences_of(const Page& page) {
   std::string text = page.content().verdict + "\n";
-  for (const PageAnswer& one : page.content().answers) text += one.answer + "\n";
+  for (const report::PageAnswer& one : page.content().answers) text += one.answer + "\n";
   return text;
 }
 

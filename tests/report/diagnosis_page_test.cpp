@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::diagnosis_page_test {
+using namespace report;
 namespace {
 
 /// A diagnosis with two effects missing, of which the second is as unsure as `sd` says.

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::drive_section_test {
+using namespace report;
 namespace {
 
 using testing::other_drive;

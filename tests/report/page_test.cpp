@@ -16,6 +16,8 @@
 #include <nlohmann/json.hpp>
 
 namespace trussmap::page_test {
+using namespace plot;
+using namespace report;
 namespace {
 
 const PageRuntime kRuntime{"main { color: red }\n", "/* the script */"};

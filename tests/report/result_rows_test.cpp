@@ -19,6 +19,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::result_rows_test {
+using namespace report;
 namespace {
 
 const std::vector<std::string> kQuestions{
@@ -340,7 +341,7 @@ TEST(ResultRows, TrendsThatAreNoneHaveNoChart) {
   const Page page =
       comparison_page({model_with(legs_off({0.02, 0.03}, 0.02), false), trends}, "a recording");
   std::set<std::string> ids;
-  for (const Chart* chart : charts_of(page.content())) ids.insert(chart->id);
+  for (const plot::Chart* chart : charts_of(page.content())) ids.insert(chart->id);
   EXPECT_TRUE(ids.contains("trend-1"));
   EXPECT_FALSE(ids.contains("trend-2"));
 }

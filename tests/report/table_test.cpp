@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::table_test {
+using namespace text;
 namespace {
 
 TEST(TextTable, AlignsByCharactersAndEndsLinesCleanly) {

@@ -119,8 +119,8 @@ std::vector<double> gains(const World& world) {
   const TrueMotion& motion = world.drive.motion;
   std::vector<Pose> path;
   for (const TrueRow& row : motion.rows) path.push_back(row.pose);
-  RowVariables variables = row_variables(testing::driven(world.drive.recording).drive,
-                                         world.robot.geometry, motion.start, path, 0);
+  RowVariables variables = drive::row_variables(testing::driven(world.drive.recording).drive,
+                                                world.robot.geometry, motion.start, path, 0);
   variables["reverses_left"] = reversals(world, -1.0);
   variables["reverses_right"] = reversals(world, 1.0);
   const std::set<Channel> instant = {Channel::compass, Channel::range, Channel::range_scale,
@@ -219,11 +219,11 @@ TEST(EffectPhysics, EveryCatalogueEffectIsTriedHere) {
   for (const Case& one : cases()) tried.insert(find_entry(one.name));
   for (const CatalogueEntry& entry : catalogue()) {
     if (entry.channel == Channel::truth_heading) continue;  // of a tracker, not of a robot
-    if (acts_on_fixes(entry.channel)) continue;             // tests of fixes
-    if (acts_on_loops(entry.channel)) continue;             // calibration/sensor_places_test.cpp
+    if (effects::acts_on_fixes(entry.channel)) continue;    // tests of fixes
+    if (effects::acts_on_loops(entry.channel)) continue;    // calibration/sensor_places_test.cpp
     // No landmark has an axis here: fit/landmark_yaw_test.cpp.
     if (entry.channel == Channel::sighting_yaw) continue;
-    if (!is_of_drive(entry.channel, Robot())) continue;  // fit/other_drives_test.cpp
+    if (!effects::is_of_drive(entry.channel, Robot())) continue;  // fit/other_drives_test.cpp
     if (entry.channel == Channel::gyro || entry.channel == Channel::gyro_scale) {
       continue;  // this robot has none: fit/gyro_test.cpp
     }

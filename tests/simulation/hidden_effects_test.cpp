@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::hidden_effects_test {
+using namespace simulation;
 namespace {
 
 struct Field {

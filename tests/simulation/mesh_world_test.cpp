@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::mesh_world_test {
+using namespace simulation;
 namespace {
 
 TEST(MeshSize, IsReadFromText) {

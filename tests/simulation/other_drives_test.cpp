@@ -21,6 +21,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::other_drives_test {
+using namespace simulation;
 namespace {
 
 using testing::other_drive;
@@ -262,8 +263,8 @@ TEST(HiddenEffects, AreThoseOfTheDrive) {
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
       for (const Effect& effect :
            draw_hidden_effects(world.drive.motion, world.mesh, robot, true, seed)) {
-        EXPECT_TRUE(is_of_drive(effect.channel, robot.geometry)) << effect.name;
-        if (!is_of_drive(effect.channel, Robot())) own.insert(effect.channel);
+        EXPECT_TRUE(effects::is_of_drive(effect.channel, robot.geometry)) << effect.name;
+        if (!effects::is_of_drive(effect.channel, Robot())) own.insert(effect.channel);
       }
     }
     EXPECT_GE(own.size(), 2U) << name_of(kind);

@@ -497,7 +497,8 @@ TEST(RoughNoise, EveryRowIsMisreadAsItsLegIs) {
   const TrueMotion& motion = world.motions.front();
   RoughNoise rough;
   rough.floor = true;
-  const std::vector<LegMisreading> misreadings = leg_misreadings(motion, rough, 1);
+  const std::vector<simulation::LegMisreading> misreadings =
+      simulation::leg_misreadings(motion, rough, 1);
   ASSERT_EQ(misreadings.size(), motion.rows.size());
   std::size_t changes = 0;
   for (std::size_t row = 1; row < misreadings.size(); ++row) {

@@ -17,6 +17,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::route_robot_test {
+using namespace simulation;
 namespace {
 
 using std::numbers::pi;

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::tours_test {
+using namespace simulation;
 namespace {
 
 using Pair = std::pair<int, int>;

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::true_motion_test {
+using namespace simulation;
 namespace {
 
 using std::numbers::pi;

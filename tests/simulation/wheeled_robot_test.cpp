@@ -181,7 +181,7 @@ TEST(WheeledRobot, RangeSensorSeesSomeOfWhatIsInReach) {
 
 TEST(WheeledRobot, SurveyErrsAsStated) {
   const Mesh mesh = even_mesh({30, 30}, 1.0);
-  const std::vector<SurveyPoint> points = survey(mesh, 0.01, 6);
+  const std::vector<SurveyPoint> points = simulation::survey(mesh, 0.01, 6);
   double squares = 0.0;
   for (std::size_t k = 0; k < points.size(); ++k) {
     EXPECT_EQ(points[k].landmark, landmark_name(mesh, static_cast<int>(k)));

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::distributions_test {
+using namespace statistics;
 namespace {
 
 /// Simpson's rule.

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::multiple_tests_test {
+using namespace statistics;
 namespace {
 
 TEST(MultipleTests, HolmAsInHisPaper) {

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::quadratic_forms_test {
+using namespace statistics;
 namespace {
 
 TEST(QuadraticForm, TailsAreThoseOfImhofsTable) {

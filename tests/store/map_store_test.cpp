@@ -30,6 +30,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::map_store_test {
+using namespace store;
 namespace {
 
 namespace fs = std::filesystem;

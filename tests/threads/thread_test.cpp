@@ -33,6 +33,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::thread_test {
+using namespace linalg;
 namespace {
 
 constexpr int kThreads = 4;

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::measured_truss_test {
+using namespace truss;
 namespace {
 
 struct Measurement {
@@ -65,7 +66,7 @@ TEST(MeasuredTruss, EqualsDenseLeastSquaresOfAllMeasurements) {
       const Vector2 off = p.segment<2>(2 * one.j) - p.segment<2>(2 * one.i) - one.z;
       chi2 += off.dot(one.information * off);
     }
-    for (const Kernel kernel : {Kernel::frontal, Kernel::cholmod}) {
+    for (const linalg::Kernel kernel : {linalg::Kernel::frontal, linalg::Kernel::cholmod}) {
       const MeasuredTruss::Fit fit = truss.fit(kernel);
       EXPECT_NEAR(fit.chi2, chi2, 1e-10 * chi2);
       EXPECT_EQ(fit.dof, 2 * (static_cast<int>(measurements.size()) - joints + 1));

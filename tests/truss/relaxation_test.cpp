@@ -25,6 +25,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::relaxation_test {
+using namespace truss;
 namespace {
 
 using nlohmann::json;

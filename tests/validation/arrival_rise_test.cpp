@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::arrival_rise_test {
+using namespace validation;
 namespace {
 
 /// Legs by their numbers, with so many metres between prediction and truth.

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::blocked_coefficients_test {
+using namespace validation;
 namespace {
 
 using testing::Disturbance;
@@ -50,7 +51,7 @@ TEST(BlockedCoefficients, AreThoseOfAFitWithoutTheBlocksSightings) {
   const DrivenRecording recording = recorded(wheels, 61);
   const Model model = with_effects({{Channel::travel, "1"}, {Channel::turn, "1"}});
   const ModelFit fit = fit_model({recording}, model);
-  const FitState& state = *fit.state;
+  const fitting::FitState& state = *fit.state;
   const TimeBlocks blocks(state.problem, kBlocks);
   const std::vector<Eigen::VectorXd> without = offsets_without_blocks(state, blocks);
   double moved = 0.0;
@@ -86,7 +87,7 @@ TEST(BlockedCoefficients, WhatOneBlockAloneTellsGoesBackToNothing) {
 }
 
 TEST(BlockedCoefficients, BlocksShareEachSessionsTime) {
-  RecordingProblem problem;
+  estimation::RecordingProblem problem;
   problem.sessions = {"one", "two"};
   problem.poses = {{0, 10.0}, {0, 30.0}, {0, 110.0}, {1, 0.0}, {1, 5.0}};
   const TimeBlocks blocks(problem, kBlocks);

@@ -18,6 +18,8 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::held_out_test {
+using namespace fitting;
+using namespace validation;
 namespace {
 
 using testing::Disturbance;
@@ -42,7 +44,7 @@ HeldOut predicted(const std::vector<DrivenRecording>& recordings, const Model& m
 
 std::vector<LegSpan> spans(const std::vector<DrivenRecording>& recordings,
                            const LegOptions& options) {
-  return leg_spans(recordings, make_problem(recordings, inverted_model()), options);
+  return leg_spans(recordings, estimation::make_problem(recordings, inverted_model()), options);
 }
 
 /// Truth rows at the end of every `every`-th row, and no sightings.
@@ -89,7 +91,8 @@ TEST(HeldOut, WhichLegsDependsOnTheirNumberAndTheShareAlone) {
 TEST(HeldOut, LegsRunFromReferenceToReference) {
   const InvertedRecording simulated = invert({}, {}, 53);
   const std::vector<DrivenRecording> recordings = {simulated.recording};
-  const RecordingProblem problem = make_problem(recordings, inverted_model());
+  const estimation::RecordingProblem problem =
+      estimation::make_problem(recordings, inverted_model());
   const std::vector<LegSpan> legs = leg_spans(recordings, problem);
   // One standing sighting per stop, each of another landmark than the one before.
   ASSERT_EQ(legs.size() + 1, simulated.recording.sightings.size());
@@ -252,8 +255,8 @@ TEST(HeldOut, SlopesOfAYawEffectTakeItsErrorAway) {
     ASSERT_GT(legs.metrics().legs.size(), 5U);
     Effect open = options.effects.front();
     open.coefficients.clear();
-    const ScoreTest test(fit);
-    const Score score = test.test({open}).front();
+    const criticism::ScoreTest test(fit);
+    const criticism::Score score = test.test({open}).front();
     ASSERT_EQ(score.dof, 1);
     const Eigen::VectorXd change = g * legs.slopes(open, score.columns, score.landmarks).col(0);
     const double before = legs.metrics().arrival_rms;

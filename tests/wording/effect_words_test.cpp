@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace trussmap::effect_words_test {
+using namespace effects;
 namespace {
 
 TEST(EffectWords, APlaceIsReadOffTheShapeNotOffTheName) {

@@ -6,7 +6,7 @@
 #include "estimation/kinds/kinds.hpp"
 #include "estimation/kinds/sighted.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 class CartesianViewKind final : public Sighted {
@@ -14,7 +14,7 @@ class CartesianViewKind final : public Sighted {
   using Sighted::Sighted;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
-                                     const ViewPattern& view) const override {
+                                     const effects::ViewPattern& view) const override {
     return offset_rows(at, value, view);
   }
 
@@ -32,9 +32,9 @@ class CartesianViewKind final : public Sighted {
   }
 
   /// The offset is measured: a range's error lies along the sight.
-  [[nodiscard]] ViewVector unit_view(Channel channel, const Measurement& one, double speed,
-                                     double turn_rate) const override {
-    ViewVector unit = MeasurementKind::unit_view(channel, one, speed, turn_rate);
+  [[nodiscard]] effects::ViewVector unit_view(Channel channel, const Measurement& one, double speed,
+                                              double turn_rate) const override {
+    effects::ViewVector unit = MeasurementKind::unit_view(channel, one, speed, turn_rate);
     const Vector2 away = -one.value.head<2>().normalized();
     const double size = channel == Channel::range         ? 1.0
                         : channel == Channel::range_scale ? one.value.head<2>().norm()
@@ -47,18 +47,18 @@ class CartesianViewKind final : public Sighted {
   }
 
   [[nodiscard]] std::optional<Vector2> seen_from(const Measurement& one, const Pose& pose,
-                                                 const ViewPattern& view) const override {
+                                                 const effects::ViewPattern& view) const override {
     return sensor_at(pose, view) + rotation(pose.heading + view.heading) * one.value.head<2>();
   }
 
-  [[nodiscard]] Eigen::Matrix<double, 2, 4> seen_by_rows(const Measurement&, const Pose& pose,
-                                                         const ViewPattern& view) const override {
+  [[nodiscard]] Eigen::Matrix<double, 2, 4> seen_by_rows(
+      const Measurement&, const Pose& pose, const effects::ViewPattern& view) const override {
     Eigen::Matrix<double, 2, 4> T = Eigen::Matrix<double, 2, 4>::Zero();
     T.leftCols<2>() = -rotation(pose.heading + view.heading);
     return T;
   }
 
-  void draw(const Vector4& exact, const Noise& noise, NormalDraws& draws,
+  void draw(const Vector4& exact, const Noise& noise, statistics::NormalDraws& draws,
             Sighting& sighting) const override {
     draw_polar(exact.head<2>().norm(), direction(exact.head<2>()), noise, draws, sighting);
   }
@@ -71,4 +71,4 @@ constinit const CartesianViewKind kCartesianView{
 
 const MeasurementKind& kinds::cartesian_view = kCartesianView;
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 class DirectionKind final : public Sighted {
@@ -16,7 +16,7 @@ class DirectionKind final : public Sighted {
 
   /// Of a view the second row.
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
-                                     const ViewPattern& view) const override {
+                                     const effects::ViewPattern& view) const override {
     MeasurementRows rows = polar_rows(at, Vector4(0.0, value[0], 0.0, 0.0), view);
     rows.error.head<2>() << rows.error[1], 0.0;
     for (auto* part : {&rows.by_from, &rows.by_to}) {
@@ -29,7 +29,7 @@ class DirectionKind final : public Sighted {
   }
 
   [[nodiscard]] double missed(const Measurement& one, const Pose& pose, const Vector2& landmark,
-                              const ViewPattern& view) const override {
+                              const effects::ViewPattern& view) const override {
     const Vector2 to = landmark - sensor_at(pose, view);
     const double looked = pose.heading + view.heading - view.bearing + one.value[0];
     return to.norm() * std::abs(wrap_angle(trussmap::direction(to) - looked));
@@ -39,7 +39,7 @@ class DirectionKind final : public Sighted {
     return {{"bearing", Channel::bearing}};
   }
 
-  void draw(const Vector4& exact, const Noise& noise, NormalDraws& draws,
+  void draw(const Vector4& exact, const Noise& noise, statistics::NormalDraws& draws,
             Sighting& sighting) const override {
     sighting.bearing = wrap_angle(exact[0] + draws(noise.bearing));
   }
@@ -51,4 +51,4 @@ constinit const DirectionKind kDirection{{.words = "sight of", .noise = "bearing
 
 const MeasurementKind& kinds::direction = kDirection;
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -11,11 +11,11 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 /// In map axes, from the robot.
-Vector2 antenna_of(const Pose& pose, const ViewPattern& view) {
+Vector2 antenna_of(const Pose& pose, const effects::ViewPattern& view) {
   return rotation(pose.heading + view.heading) * Vector2(view.ahead, view.left);
 }
 
@@ -24,7 +24,7 @@ class FixKind final : public MeasurementKind {
   using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
-                                     const ViewPattern& view) const override {
+                                     const effects::ViewPattern& view) const override {
     MeasurementRows rows;
     const Matrix2 R = rotation(at.from.heading + view.heading);
     const Vector2 antenna = R * Vector2(view.ahead, view.left);
@@ -45,7 +45,7 @@ class FixKind final : public MeasurementKind {
   }
 
   [[nodiscard]] std::optional<Vector2> seen_from(const Measurement&, const Pose& pose,
-                                                 const ViewPattern& view) const override {
+                                                 const effects::ViewPattern& view) const override {
     return pose.position() + antenna_of(pose, view) + Vector2(view.x, view.y);
   }
 
@@ -76,12 +76,12 @@ Measurement kinds::measured_by(const Fix& fix, const Noise& noise) {
   return one;
 }
 
-void kinds::draw(Fix& fix, const Pose& pose, const ViewPattern& view, const Noise& noise,
-                 NormalDraws& draws) {
+void kinds::draw(Fix& fix, const Pose& pose, const effects::ViewPattern& view, const Noise& noise,
+                 statistics::NormalDraws& draws) {
   const Vector2 antenna = antenna_of(pose, view);
   const double sd = stated_or(fix.sd, noise.fix);
   fix.x = pose.x + antenna.x() + view.x + draws(sd);
   fix.y = pose.y + antenna.y() + view.y + draws(sd);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

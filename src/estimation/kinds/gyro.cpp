@@ -5,7 +5,7 @@
 // effects. Nothing is predicted of an excess; its noise is white already.
 #include "estimation/kinds/kinds.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 class GyroKind final : public MeasurementKind {
@@ -13,7 +13,7 @@ class GyroKind final : public MeasurementKind {
   using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends&, const Vector4& value,
-                                     const ViewPattern&) const override {
+                                     const effects::ViewPattern&) const override {
     MeasurementRows rows;
     rows.error = -value;
     return rows;
@@ -45,4 +45,4 @@ Measurement kinds::gyro_measured(const GyroExcess& excess) {
   return one;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

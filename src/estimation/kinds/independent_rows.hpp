@@ -8,7 +8,7 @@
 #include <cmath>
 #include <initializer_list>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// A row per value; an sd below a micrometre or microradian is one.
 [[nodiscard]] inline Measurement independent_rows(const MeasurementKind& kind,
@@ -32,4 +32,4 @@ namespace trussmap {
   return std::isnan(sd) ? otherwise : sd;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace trussmap::kinds {
+namespace trussmap::estimation::kinds {
 
 std::span<const MeasurementKind* const> all() {
   static const std::array list{&segment,        &gyro,      &standing,     &view,
@@ -13,4 +13,4 @@ std::span<const MeasurementKind* const> all() {
   return list;
 }
 
-}  // namespace trussmap::kinds
+}  // namespace trussmap::estimation::kinds

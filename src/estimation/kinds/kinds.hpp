@@ -11,7 +11,7 @@
 #include <optional>
 #include <span>
 
-namespace trussmap::kinds {
+namespace trussmap::estimation::kinds {
 
 extern const MeasurementKind& segment;
 extern const MeasurementKind& gyro;
@@ -44,15 +44,16 @@ extern const MeasurementKind& loop;
 [[nodiscard]] Measurement heading_measured(const SurveyPoint& point, const Noise& noise);
 
 /// The same rows drawn anew, of a robot at this pose, or moved by this step between both.
-void draw(TruthRow& row, const Pose& pose, const ViewPattern& view, const Noise& noise,
-          NormalDraws& draws);
-void draw(Fix& fix, const Pose& pose, const ViewPattern& view, const Noise& noise,
-          NormalDraws& draws);
-void draw(Loop& loop, const Pose& robot_step, const ViewPattern& view, const Noise& noise,
-          NormalDraws& draws);
+void draw(TruthRow& row, const Pose& pose, const effects::ViewPattern& view, const Noise& noise,
+          statistics::NormalDraws& draws);
+void draw(Fix& fix, const Pose& pose, const effects::ViewPattern& view, const Noise& noise,
+          statistics::NormalDraws& draws);
+void draw(Loop& loop, const Pose& robot_step, const effects::ViewPattern& view, const Noise& noise,
+          statistics::NormalDraws& draws);
 /// A surveyed place, and heading, drawn anew.
 [[nodiscard]] Vector2 drawn_place(const SurveyPoint& point, const Vector2& place,
-                                  const Noise& noise, NormalDraws& draws);
-[[nodiscard]] double drawn_heading(double orientation, const Noise& noise, NormalDraws& draws);
+                                  const Noise& noise, statistics::NormalDraws& draws);
+[[nodiscard]] double drawn_heading(double orientation, const Noise& noise,
+                                   statistics::NormalDraws& draws);
 
-}  // namespace trussmap::kinds
+}  // namespace trussmap::estimation::kinds

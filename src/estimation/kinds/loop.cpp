@@ -13,7 +13,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 class LoopKind final : public MeasurementKind {
@@ -21,7 +21,7 @@ class LoopKind final : public MeasurementKind {
   using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
-                                     const ViewPattern& view) const override {
+                                     const effects::ViewPattern& view) const override {
     MeasurementRows rows = way_rows(at.from, at.to, value);
     rows.error[2] = wrap_angle(rows.error[2]);
     const Vector2 s(view.ahead, view.left);
@@ -64,8 +64,8 @@ Measurement kinds::measured_by(const Loop& loop, const Noise& noise) {
   return one;
 }
 
-void kinds::draw(Loop& loop, const Pose& robot_step, const ViewPattern& view, const Noise& noise,
-                 NormalDraws& draws) {
+void kinds::draw(Loop& loop, const Pose& robot_step, const effects::ViewPattern& view,
+                 const Noise& noise, statistics::NormalDraws& draws) {
   const Pose scanner{view.ahead, view.left, view.heading};
   const Pose step = compose(inverse(scanner), compose(robot_step, scanner));
   const double sd = stated_or(loop.sd, noise.loop);
@@ -74,4 +74,4 @@ void kinds::draw(Loop& loop, const Pose& robot_step, const ViewPattern& view, co
   loop.dtheta = wrap_angle(step.heading + draws(stated_or(loop.sd_heading, noise.loop_heading)));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 class SegmentKind final : public MeasurementKind {
@@ -19,7 +19,7 @@ class SegmentKind final : public MeasurementKind {
   using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement& one, const Ends& at, const Vector4& value,
-                                     const ViewPattern&) const override {
+                                     const effects::ViewPattern&) const override {
     MeasurementRows rows = way_rows(at.from, at.to, value);
     if (one.rows < 4) return rows;
     rows.error[3] = wrap_angle(at.from.heading - value[3]);
@@ -65,4 +65,4 @@ Measurement kinds::segment_measured(const SegmentMotion& motion, const Matrix4& 
   return one;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

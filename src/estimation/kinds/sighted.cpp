@@ -9,15 +9,16 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 
-Sight sight(const Pose& pose, const Vector2& landmark, const ViewPattern& view) {
+Sight sight(const Pose& pose, const Vector2& landmark, const effects::ViewPattern& view) {
   const Matrix2 R = rotation(pose.heading);
   const Vector2 lever = R * Vector2(view.ahead, view.left);
   return {landmark - pose.position() - lever, -quarter_turn(lever), -R};
 }
 
-MeasurementRows offset_rows(const Ends& at, const Vector4& value, const ViewPattern& view) {
+MeasurementRows offset_rows(const Ends& at, const Vector4& value,
+                            const effects::ViewPattern& view) {
   MeasurementRows rows;
   const Sight seen = sight(at.from, at.landmark, view);
   const Matrix2 R = rotation(-at.from.heading - view.heading);
@@ -31,7 +32,7 @@ MeasurementRows offset_rows(const Ends& at, const Vector4& value, const ViewPatt
   return rows;
 }
 
-MeasurementRows polar_rows(const Ends& at, const Vector4& value, const ViewPattern& view) {
+MeasurementRows polar_rows(const Ends& at, const Vector4& value, const effects::ViewPattern& view) {
   MeasurementRows rows;
   const Sight seen = sight(at.from, at.landmark, view);
   const double range = std::max(seen.offset.norm(), 1e-9);
@@ -53,7 +54,7 @@ MeasurementRows polar_rows(const Ends& at, const Vector4& value, const ViewPatte
   return rows;
 }
 
-void draw_polar(double range, double bearing, const Noise& noise, NormalDraws& draws,
+void draw_polar(double range, double bearing, const Noise& noise, statistics::NormalDraws& draws,
                 Sighting& sighting) {
   const double sd = std::hypot(noise.range, noise.range_relative * range);
   sighting.range = std::max(range + draws(sd), kLeastDrawnRange);
@@ -73,7 +74,7 @@ namespace kinds {
 Measurement measured_by(const Sighting& sighting, const Noise& noise) {
   constexpr double kNearRange = 3.0;  // sds: a range within says nothing of a direction
   if (sighting.standing()) {
-    const Vector2 offset = code_from_robot(sighting);
+    const Vector2 offset = recording::code_from_robot(sighting);
     return independent_rows(standing, {offset.x(), offset.y()}, {noise.sighting, noise.sighting});
   }
   const double sd_range = std::hypot(noise.range, noise.range_relative * sighting.range);
@@ -92,4 +93,4 @@ Measurement measured_by(const Sighting& sighting, const Noise& noise) {
 
 }  // namespace kinds
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

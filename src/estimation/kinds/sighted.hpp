@@ -9,7 +9,7 @@
 
 #include "estimation/measurement_kind.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// From the robot's sensor to a landmark, and how it changes with the pose and the sensor's place.
 struct Sight {
@@ -17,25 +17,26 @@ struct Sight {
   Vector2 by_heading;  ///< of the robot
   Matrix2 by_lever;    ///< of (ahead, left)
 };
-[[nodiscard]] Sight sight(const Pose& pose, const Vector2& landmark, const ViewPattern& view);
+[[nodiscard]] Sight sight(const Pose& pose, const Vector2& landmark,
+                          const effects::ViewPattern& view);
 
 /// q.
-[[nodiscard]] inline Vector2 sensor_at(const Pose& pose, const ViewPattern& view) {
+[[nodiscard]] inline Vector2 sensor_at(const Pose& pose, const effects::ViewPattern& view) {
   return pose.position() + rotation(pose.heading) * Vector2(view.ahead, view.left);
 }
 
 /// The landmark's place in the sensor's axes: R(theta + heading)' delta - offset.
 [[nodiscard]] MeasurementRows offset_rows(const Ends& at, const Vector4& value,
-                                          const ViewPattern& view);
+                                          const effects::ViewPattern& view);
 
 /// Range and bearing: |delta| - range,  direction(delta) - theta - bearing.
 [[nodiscard]] MeasurementRows polar_rows(const Ends& at, const Vector4& value,
-                                         const ViewPattern& view);
+                                         const effects::ViewPattern& view);
 
 inline constexpr double kLeastDrawnRange = 1e-6;  ///< m
 
 /// A range and, where the sighting has one, a bearing drawn anew.
-void draw_polar(double range, double bearing, const Noise& noise, NormalDraws& draws,
+void draw_polar(double range, double bearing, const Noise& noise, statistics::NormalDraws& draws,
                 Sighting& sighting);
 
 class Sighted : public MeasurementKind {
@@ -61,4 +62,4 @@ class Sighted : public MeasurementKind {
   }
 };
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

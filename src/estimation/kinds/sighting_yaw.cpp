@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 class SightingYawKind final : public MeasurementKind {
@@ -16,7 +16,7 @@ class SightingYawKind final : public MeasurementKind {
   using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
-                                     const ViewPattern& view) const override {
+                                     const effects::ViewPattern& view) const override {
     MeasurementRows rows;
     rows.error[0] =
         wrap_angle(at.orientation - at.from.heading - view.heading + view.yaw - value[0]);
@@ -43,11 +43,11 @@ class SightingYawKind final : public MeasurementKind {
   }
 
   /// Where the robot stands beside a floor code stays as it was in its own axes.
-  void draw(const Vector4& exact, const Noise& noise, NormalDraws& draws,
+  void draw(const Vector4& exact, const Noise& noise, statistics::NormalDraws& draws,
             Sighting& sighting) const override {
-    const Vector2 code = code_from_robot(sighting);
+    const Vector2 code = recording::code_from_robot(sighting);
     sighting.yaw = wrap_angle(exact[0] + draws(noise.yaw));
-    if (!std::isnan(sighting.dx)) place_by_code(code, sighting);
+    if (!std::isnan(sighting.dx)) recording::place_by_code(code, sighting);
   }
 };
 
@@ -70,4 +70,4 @@ std::optional<Measurement> kinds::yaw_measured(const Sighting& sighting, const N
   return independent_rows(sighting_yaw, {sighting.yaw}, {noise.yaw});
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

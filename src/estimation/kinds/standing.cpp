@@ -7,7 +7,7 @@
 #include "estimation/kinds/kinds.hpp"
 #include "estimation/kinds/sighted.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 class StandingKind final : public Sighted {
@@ -15,8 +15,8 @@ class StandingKind final : public Sighted {
   using Sighted::Sighted;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
-                                     const ViewPattern& view) const override {
-    ViewPattern place = view;
+                                     const effects::ViewPattern& view) const override {
+    effects::ViewPattern place = view;
     place.heading = 0.0;
     MeasurementRows rows = offset_rows(at, value, place);
     rows.by_view.col(2).setZero();
@@ -24,12 +24,12 @@ class StandingKind final : public Sighted {
   }
 
   [[nodiscard]] std::optional<Vector2> seen_from(const Measurement& one, const Pose& pose,
-                                                 const ViewPattern& view) const override {
+                                                 const effects::ViewPattern& view) const override {
     return sensor_at(pose, view) + rotation(pose.heading) * one.value.head<2>();
   }
 
-  [[nodiscard]] Eigen::Matrix<double, 2, 4> seen_by_rows(const Measurement&, const Pose& pose,
-                                                         const ViewPattern&) const override {
+  [[nodiscard]] Eigen::Matrix<double, 2, 4> seen_by_rows(
+      const Measurement&, const Pose& pose, const effects::ViewPattern&) const override {
     Eigen::Matrix<double, 2, 4> T = Eigen::Matrix<double, 2, 4>::Zero();
     T.leftCols<2>() = -rotation(pose.heading);
     return T;
@@ -43,4 +43,4 @@ constinit const StandingKind kStanding{
 
 const MeasurementKind& kinds::standing = kStanding;
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 class SurveyKind final : public MeasurementKind {
@@ -15,7 +15,7 @@ class SurveyKind final : public MeasurementKind {
   using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
-                                     const ViewPattern&) const override {
+                                     const effects::ViewPattern&) const override {
     MeasurementRows rows;
     rows.error.head<2>() = at.landmark - value.head<2>();
     rows.by_from.topLeftCorner<2, 2>().setIdentity();
@@ -36,7 +36,7 @@ class SurveyHeadingKind final : public MeasurementKind {
   using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
-                                     const ViewPattern&) const override {
+                                     const effects::ViewPattern&) const override {
     MeasurementRows rows;
     rows.error[0] = wrap_angle(at.orientation - value[0]);
     rows.by_from(0, 0) = 1.0;
@@ -65,7 +65,7 @@ Measurement kinds::measured_by(const SurveyPoint& point, const Noise& noise) {
 }
 
 Vector2 kinds::drawn_place(const SurveyPoint& point, const Vector2& place, const Noise& noise,
-                           NormalDraws& draws) {
+                           statistics::NormalDraws& draws) {
   const double sd = stated_or(point.sd, noise.survey);
   return place + Vector2(draws(sd), draws(sd));
 }
@@ -74,8 +74,9 @@ Measurement kinds::heading_measured(const SurveyPoint& point, const Noise& noise
   return independent_rows(survey_heading, {point.heading}, {noise.yaw});
 }
 
-double kinds::drawn_heading(double orientation, const Noise& noise, NormalDraws& draws) {
+double kinds::drawn_heading(double orientation, const Noise& noise,
+                            statistics::NormalDraws& draws) {
   return orientation + draws(noise.yaw);
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

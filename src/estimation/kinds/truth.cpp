@@ -6,7 +6,7 @@
 #include "estimation/kinds/kinds.hpp"
 #include "estimation/kinds/sighted.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 class TruthKind final : public MeasurementKind {
@@ -14,7 +14,7 @@ class TruthKind final : public MeasurementKind {
   using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
-                                     const ViewPattern& view) const override {
+                                     const effects::ViewPattern& view) const override {
     MeasurementRows rows;
     const Pose& pose = at.from;
     const Matrix2 R = rotation(pose.heading);
@@ -29,7 +29,7 @@ class TruthKind final : public MeasurementKind {
   }
 
   [[nodiscard]] std::optional<Vector2> seen_from(const Measurement&, const Pose& pose,
-                                                 const ViewPattern& view) const override {
+                                                 const effects::ViewPattern& view) const override {
     return sensor_at(pose, view);
   }
 };
@@ -53,12 +53,12 @@ Measurement kinds::measured_by(const TruthRow& row, const Noise& noise) {
                           {noise.truth, noise.truth, noise.truth_heading});
 }
 
-void kinds::draw(TruthRow& row, const Pose& pose, const ViewPattern& view, const Noise& noise,
-                 NormalDraws& draws) {
+void kinds::draw(TruthRow& row, const Pose& pose, const effects::ViewPattern& view,
+                 const Noise& noise, statistics::NormalDraws& draws) {
   const Vector2 place = sensor_at(pose, view);
   row.x = place.x() + draws(noise.truth);
   row.y = place.y() + draws(noise.truth);
   row.heading = wrap_angle(pose.heading + view.heading + draws(noise.truth_heading));
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -9,11 +9,11 @@
 
 #include <cmath>
 
-namespace trussmap {
+namespace trussmap::estimation {
 namespace {
 
 /// m, freed from what the view adds.
-double range_of(const Measurement& one, const ViewPattern& view) {
+double range_of(const Measurement& one, const effects::ViewPattern& view) {
   return (one.value[0] - view.range) / (1.0 + view.range_scale);
 }
 
@@ -22,7 +22,7 @@ class ViewKind final : public Sighted {
   using Sighted::Sighted;
 
   [[nodiscard]] MeasurementRows rows(const Measurement& one, const Ends& at, const Vector4& value,
-                                     const ViewPattern& view) const override {
+                                     const effects::ViewPattern& view) const override {
     MeasurementRows rows = polar_rows(at, value, view);
     if (one.rows > 1) return rows;
     rows.error[1] = 0.0;
@@ -46,14 +46,14 @@ class ViewKind final : public Sighted {
   }
 
   [[nodiscard]] std::optional<Vector2> seen_from(const Measurement& one, const Pose& pose,
-                                                 const ViewPattern& view) const override {
+                                                 const effects::ViewPattern& view) const override {
     if (one.rows == 1) return std::nullopt;
     const Vector2 offset = range_of(one, view) * rotation(one.value[1] - view.bearing).col(0);
     return sensor_at(pose, view) + rotation(pose.heading + view.heading) * offset;
   }
 
-  [[nodiscard]] Eigen::Matrix<double, 2, 4> seen_by_rows(const Measurement& one, const Pose& pose,
-                                                         const ViewPattern& view) const override {
+  [[nodiscard]] Eigen::Matrix<double, 2, 4> seen_by_rows(
+      const Measurement& one, const Pose& pose, const effects::ViewPattern& view) const override {
     Eigen::Matrix<double, 2, 4> T = Eigen::Matrix<double, 2, 4>::Zero();
     const Matrix2 along =
         rotation(pose.heading + view.heading) * rotation(one.value[1] - view.bearing);
@@ -63,7 +63,7 @@ class ViewKind final : public Sighted {
   }
 
   [[nodiscard]] double missed(const Measurement& one, const Pose& pose, const Vector2& landmark,
-                              const ViewPattern& view) const override {
+                              const effects::ViewPattern& view) const override {
     if (one.rows > 1) return MeasurementKind::missed(one, pose, landmark, view);
     return std::abs((landmark - sensor_at(pose, view)).norm() - range_of(one, view));
   }
@@ -74,7 +74,7 @@ class ViewKind final : public Sighted {
     return all;
   }
 
-  void draw(const Vector4& exact, const Noise& noise, NormalDraws& draws,
+  void draw(const Vector4& exact, const Noise& noise, statistics::NormalDraws& draws,
             Sighting& sighting) const override {
     draw_polar(exact[0], exact[1], noise, draws, sighting);
   }
@@ -87,4 +87,4 @@ constinit const ViewKind kView{
 
 const MeasurementKind& kinds::view = kView;
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation

@@ -4,7 +4,7 @@
 
 #include "estimation/measurement.hpp"
 
-namespace trussmap {
+namespace trussmap::estimation {
 
 /// Of a way from pose to pose in the axes of its start: displacement and turn, not wrapped.
 ///   R(theta_i)'(p_j - p_i) - d,  theta_j - theta_i - a
@@ -23,4 +23,4 @@ namespace trussmap {
   return rows;
 }
 
-}  // namespace trussmap
+}  // namespace trussmap::estimation
