@@ -73,7 +73,7 @@ struct FittedLandmark {
 namespace fitting {
 /// All that the fit knows, for the library's own use.
 struct FitState;
-}
+}  // namespace fitting
 
 struct ModelFit {
   Model model;  ///< effects with channel, shape and the coefficients found
