@@ -40,14 +40,23 @@ namespace trussmap::drive {
   return drive.pair.empty() ? wheel_travel(drive.wheel_motion(row), robot) : drive.pair.at(row);
 }
 
+/// Both wheels', m.
+[[nodiscard]] inline double total_travel(const WheelTravel& travel) {
+  return std::abs(travel.left) + std::abs(travel.right);
+}
+
 /// The travels by which two wheels' noise is reckoned, of a unicycle that of two wheels at its
 /// wheelbase. With a gyro as both say: of the wheels alone, rows that err towards a larger turn
 /// would count less than those that err the other way, and all turns seem larger than the wheels
-/// say.
+/// say. But of a wheel that counts backwards the mean is nothing, whatever the gyro says: where
+/// both say far less than the wheels went, the wheels.
 [[nodiscard]] inline WheelTravel noisy_travel(const MotionRows& drive, std::size_t row,
                                               const Robot& robot) {
-  return drive.gyro.empty() ? own_travel(drive, row, robot)
-                            : wheel_travel(drive.motion(row), robot);
+  constexpr double kFarLess = 0.5;
+  const WheelTravel own = own_travel(drive, row, robot);
+  if (drive.gyro.empty()) return own;
+  const WheelTravel both = wheel_travel(drive.motion(row), robot);
+  return total_travel(both) < kFarLess * total_travel(own) ? own : both;
 }
 
 /// The body moves so much more in the row, its wheels too where no gyro is taken in; to the side

@@ -99,6 +99,22 @@ TEST(WheelsAndGyro, ARowWithoutAReadingIsTheWheelsAlone) {
             1e-14 * alone.norm());
 }
 
+/// Straight ahead the mean of a wheel and one that counts backwards is nothing.
+TEST(WheelsAndGyro, AWheelIsAsNoisyWhicheverWayItCounts) {
+  const Robot robot{0.3};
+  const Noise noise = noise_of(0.003, 0.003, 0.001);
+  MotionRows drive[2];
+  for (const int k : {0, 1}) {
+    drive[k].t = {0.1};
+    testing::add_travels(drive[k], k == 0 ? 0.05 : -0.05, 0.05, 0.3);
+    drive[k].yaw_rate = {0.0};
+    drive[k] = with_gyro(drive[k], robot, noise);
+  }
+  const double way = 0.5 * noise.left * noise.left * 0.05;  // of a mean of two wheels
+  EXPECT_NEAR(row_noise(drive[0], 0, 1.0, 0.1, robot, noise).along, way, 1e-9 * way);
+  EXPECT_NEAR(row_noise(drive[1], 0, 1.0, 0.1, robot, noise).along, way, 1e-9 * way);
+}
+
 TEST(WheelsAndGyro, AreTakenTogetherOnce) {
   const Noise noise = noise_of(0.003, 0.003, 0.001);
   const MotionRows once = with_gyro(a_drive(), Robot{0.3}, noise);
