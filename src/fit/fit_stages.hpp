@@ -7,6 +7,7 @@
 //   start_fit            a first state, and the path by it
 //   take_columns         the effects along that path, coefficients held or free
 //   adjust_once          the best state and coefficients by them; path and rows as these have it
+//   fit_from             all of it, from one start
 //   hold_one             a coefficient that the data tell nothing of, or too little
 #pragma once
 
@@ -30,6 +31,8 @@ struct Fitting {
   /// Per effect and place; nothing where fitted.
   std::vector<std::vector<std::optional<UnfittedCoefficient>>> not_fitted;
   int round = 0;
+  /// Of the fit without the effects that are sought, what the gate left out counted.
+  std::optional<double> chi2_without = std::nullopt;
 
   /// Whether it is one of the common errors, which have a prior and so are always determined.
   [[nodiscard]] bool is_common(std::size_t effect) const {
@@ -50,6 +53,13 @@ struct FitChange {
   double path = 0.0;          ///< m and rad
   double offsets = 0.0;       ///< of the linearisation, in sds
 };
+
+/// From the model's coefficients; fit_recordings is that, and from others where it is lost.
+[[nodiscard]] Fitting fit_from(const std::vector<DrivenRecording>& recordings, const Model& model,
+                               const FitterOptions& options);
+/// chi^2, each measurement that the gate left out counted as if it just passed.
+[[nodiscard]] double chi2_of_all(const estimation::RecordingAdjustment& adjustment,
+                                 const FitterOptions& options);
 
 void lay_out_recordings(const FitTask& task, Fitting& now);
 /// Since delays and steering were laid out, by more than their columns can stand for.

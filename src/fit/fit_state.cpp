@@ -94,6 +94,7 @@ void hold_unobservable(const FitTask& task, Fitting& now) {
   estimation::RecordingAdjustmentOptions how;
   how.gate = task.options.gate;
   fit.adjustment = estimation::adjust_from(fit.adjustment.state, fit.problem, without, how);
+  now.chi2_without = chi2_of_all(fit.adjustment, task.options);
   static_cast<void>(follow(task, now));
   take_columns(task, now);
   while (hold_one(task, now)) {
@@ -228,8 +229,14 @@ std::map<std::string, Vector2> places_in(const estimation::RecordingProblem& pro
   return places;
 }
 
-FitState fit_recordings(const std::vector<DrivenRecording>& recordings, const Model& model,
-                        const FitterOptions& options) {
+double chi2_of_all(const estimation::RecordingAdjustment& adjustment,
+                   const FitterOptions& options) {
+  return adjustment.chi2 +
+         options.gate.value_or(0.0) * static_cast<double>(adjustment.left_out.size());
+}
+
+Fitting fit_from(const std::vector<DrivenRecording>& recordings, const Model& model,
+                 const FitterOptions& options) {
   const FitTask task{recordings, odometry::with_gyro(recordings, model.robot, model.noise),
                      resolved(model, recordings, options.free_common_errors), options};
   Fitting now;
@@ -270,7 +277,7 @@ FitState fit_recordings(const std::vector<DrivenRecording>& recordings, const Mo
   fit.effects = estimates(now);
   fit.rounds = std::min(now.round + 1, options.max_rounds);
   tell_whether_settled(options, change, fit);
-  return std::move(fit);
+  return now;
 }
 
 estimation::RecordingProblem whole_problem(const FitState& fit) {

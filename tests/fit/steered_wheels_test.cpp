@@ -180,6 +180,22 @@ TEST(SteeredFit, LeavesNoMoreThanNoiseWithALargeGain) {
   EXPECT_GT(fit.chi2 / fit.dof, 1.0 - 4.0 * std::sqrt(2.0 / fit.dof));
 }
 
+/// About the map without it a fit of it is lost, worse than that.
+TEST(SlowSteeredFit, FindsAWheelbaseThatIsFarOff) {
+  SimulationSettings settings;
+  settings.mesh = "4x5";
+  settings.uneven = settings.rests = true;
+  settings.tours = 4;
+  settings.seed = 5;
+  settings.drive = "ackermann";
+  const SimulatedRecording made = simulate(settings, {catalogue_effect("wheelbase", {-0.3})});
+  Model model = made.model;
+  model.effects = {catalogue_effect("wheelbase")};
+  const ModelFit fit = fit_model({made.drive.recording}, model);
+  EXPECT_NEAR(fit.effects.front().effect.coefficients.at(0), -0.3, 4.0 * fit.effects.front().sd[0]);
+  EXPECT_LT(fit.chi2 / fit.dof, 1.0 + 4.0 * std::sqrt(2.0 / fit.dof));
+}
+
 class SlowSteeredDiagnosis
     : public ::testing::TestWithParam<std::pair<const char*, std::pair<const char*, double>>> {};
 
