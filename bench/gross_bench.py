@@ -345,17 +345,17 @@ def main():
     options = parser.parse_args()
     bench = Bench(options.command, options.seed)
     cases = [one for one in drawn(options.cases, options.seed) if options.only in one.name]
+    rows = open(options.csv or os.devnull, "w", newline="", encoding="utf-8")
+    writer = csv.DictWriter(rows, COLUMNS)
+    writer.writeheader()
     results = []
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+    with rows, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for one in pool.map(bench.judge, cases):
             results.append(one)
+            writer.writerow(one)
+            rows.flush()
             if told(one):
                 print(f"{one['case']}: {told(one)}", flush=True)
-    if options.csv:
-        with open(options.csv, "w", newline="", encoding="utf-8") as stream:
-            writer = csv.DictWriter(stream, COLUMNS)
-            writer.writeheader()
-            writer.writerows(results)
     print_table(results, "kind", lambda one: one["kind"])
     print_table(results, "factor", lambda one: one["factor"] or 0)
     print_table(results, "equipment", lambda one: f"{one['heading']}, {one['place']}, {one['eye']}")

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/calibrated_start.hpp"
 
+#include "calibration/gross_starts.hpp"
 #include "calibration/sensor_places.hpp"
 #include "calibration/sought_constants.hpp"
 #include "calibration/wheel_calibration.hpp"
@@ -124,6 +125,30 @@ std::map<Channel, double> steering_of(const Model& calibrated) {
   return result;
 }
 
+/// Each as it is, and as of wheels that are all so much larger: neither turns nor returns tell the
+/// way's scale.
+std::vector<std::vector<Effect>> likely_constants(const std::vector<DrivenRecording>& recordings,
+                                                  const ModelFit& given,
+                                                  const std::vector<Effect>& constants) {
+  std::vector<std::vector<Effect>> result;
+  const ProblemOptions used = fitter_options(given.options).problem;
+  for (const GrossStart& start : gross_starts(recordings, given.model.robot, used)) {
+    for (const double travel : {0.0, start.turn}) {
+      result.push_back(constants);
+      for (Effect& one : result.back()) {
+        one.coefficients.assign(one.shape.size(), 0.0);
+        if (one.channel == Channel::travel) one.coefficients = {travel};
+        if (one.channel == Channel::turn) one.coefficients = {start.turn};
+        if (one.channel == Channel::difference) {
+          one.coefficients = {start.difference * (1.0 + start.turn)};
+        }
+        if (one.channel == Channel::steer) one.coefficients = {start.steer};
+      }
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 bool is_gross(const Effect& constant) {
@@ -155,11 +180,11 @@ CalibratedStart start_of_constants(const std::vector<DrivenRecording>& recording
   const auto found = if_possible<WheelCalibration>(
       [&] { return calibration::calibrate_wheels(recordings, given.model, options); });
   keep_likely(found, given.model.robot, constants);
-  if (!found) return {std::move(constants)};
+  if (!found) return {constants, likely_constants(recordings, given, constants)};
   const DriveFactors factors = factors_of(found->model);
   const double most =
       std::max({std::abs(factors.travel), std::abs(factors.turn), std::abs(factors.difference)});
-  CalibratedStart result{std::move(constants), true, most >= kGross};
+  CalibratedStart result{std::move(constants), {}, true, most >= kGross};
   std::map<Channel, double> places = places_off(*found, given.model.robot);
   for (const auto& [channel, g] : steering_of(found->model)) places[channel] = g;
   for (Effect& one : result.constants) {

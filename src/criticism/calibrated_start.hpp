@@ -23,6 +23,9 @@ inline constexpr double kGross = 0.05;  ///< of a factor
 /// The constants as a calibration of the drive has them, where it leads anywhere, as a start.
 struct CalibratedStart {
   std::vector<Effect> constants;
+  /// Where it does not: as turns, chords and returns have them (gross_starts.hpp), the most
+  /// promising first.
+  std::vector<std::vector<Effect>> likely;
   bool found = false;
   bool gross = false;       ///< one of the drive's factors is
   bool far_places = false;  ///< a sensor, or the steering, is far from where it is stated

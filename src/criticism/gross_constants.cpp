@@ -93,7 +93,12 @@ std::optional<ModelFit> with_all(const std::vector<DrivenRecording>& recordings,
   if (!is_far_off(best)) return best;
   if (!start) start = start_of_constants(recordings, given, constants);
   if (start->found && !start->gross) return best;
-  return better_of(best, fitted_afresh(recordings, given, start->constants));
+  best = better_of(std::move(best), fitted_afresh(recordings, given, start->constants));
+  for (const std::vector<Effect>& likely : start->likely) {
+    if (!is_far_off(best)) break;
+    best = better_of(std::move(best), fitted_afresh(recordings, given, likely));
+  }
+  return best;
 }
 
 bool is_fitted(const ModelFit& fit, std::size_t effect) {

@@ -8,7 +8,9 @@
 //
 //   from the fit as given
 //   where that leaves far too much, from where a calibration finds the drive's own constants
-//   first of all from there, where it finds a sensor 0.3 m and more from where it is stated to sit
+//   where none leads anywhere, from what turns and returns to landmarks say (gross_starts.hpp)
+//   first of all from a calibration, where it finds a sensor 0.3 m and more from where it is stated
+//   to sit
 //
 // Those that the data do not surely show, by the scatter that is left, go again. They are kept
 // where they explain most of the misfit and one of the drive's factors is off by 5 % and more, or a

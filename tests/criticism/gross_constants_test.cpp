@@ -152,6 +152,42 @@ TEST(SlowGrossConstants, AWrongSignIsSaidToBeOne) {
   }
 }
 
+/// Of which the gyro says nothing that a fit from the stated signs could go by.
+TEST(SlowGrossConstants, AWheelThatCountsBackIsFoundBesideAGyro) {
+  for (const Channel wheel : {Channel::left, Channel::right}) {
+    SimulationSettings settings = small_world(35);
+    settings.gyro = true;
+    SimulatedRecording one = simulate(settings, {});
+    Drive& drive = one.drive.recording.drive;
+    negate(wheel == Channel::left ? drive.left : drive.right);
+    const auto found =
+        gross_constants({testing::driven(one.drive.recording)}, given(one), LegOptions{});
+    ASSERT_TRUE(found);
+    const Effect& first = found->fit.model.effects.front();
+    EXPECT_EQ(first.channel, wheel);
+    EXPECT_NEAR(first.coefficients.at(0), -2.0, 0.01);
+    EXPECT_LT(found->fit.chi2, 2.0 * found->fit.dof);
+  }
+}
+
+/// No calibration leads anywhere without survey, truth and fixes: turns and returns do.
+TEST(SlowGrossConstants, AWheelFiveTimesAsLargeIsFoundByRangesAlone) {
+  SimulationSettings settings = small_world(1025);
+  settings.uneven = true;
+  settings.no_compass = false;
+  settings.no_survey = true;
+  settings.range_sensor = true;
+  SimulatedRecording one = simulate(settings, {Effect{"right", Channel::right, {"1"}, {4.0}}});
+  std::erase_if(one.drive.recording.sightings,
+                [](const Sighting& sighting) { return sighting.standing(); });
+  const std::vector<DrivenRecording> driven{testing::driven(one.drive.recording)};
+  const auto found =
+      gross_constants(driven, fit_model(driven, one.model, gated_fit()), LegOptions{});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(names_in(*found), std::vector<std::string>{"right wheel"});
+  EXPECT_NEAR(found->fit.model.effects.back().coefficients.at(0), 4.0, 0.02);
+}
+
 TEST(SlowGrossConstants, AnErrorOfAnotherKindIsFittedByItself) {
   SimulationSettings settings = small_world(9);
   settings.no_compass = false;
