@@ -4,6 +4,7 @@
 #include "estimation/recording_descent.hpp"
 #include "fit/fit_stages.hpp"
 #include "fit/noise_free.hpp"
+#include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -104,7 +105,7 @@ bool hold_one(const FitTask& task, Fitting& now) {
   try {
     system.factorise();
   } catch (const linalg::NotPositiveDefinite& error) {
-    if (error.column() >= 0) throw;
+    if (error.column() >= 0) throw SolveError("the map is too loosely tied together to be solved");
   }
   const std::vector<int> lost = estimation::find_undetermined(system);
   if (lost.empty()) return hold_the_uncertain(task, system, now);
