@@ -131,8 +131,9 @@ std::vector<std::vector<Effect>> likely_constants(const std::vector<DrivenRecord
                                                   const ModelFit& given,
                                                   const std::vector<Effect>& constants) {
   std::vector<std::vector<Effect>> result;
-  const ProblemOptions used = fitter_options(given.options).problem;
-  for (const GrossStart& start : gross_starts(recordings, given.model.robot, used)) {
+  const estimation::ProblemOptions used = fitting::fitter_options(given.options).problem;
+  for (const calibration::GrossStart& start :
+       calibration::gross_starts(recordings, given.model.robot, used)) {
     for (const double travel : {0.0, start.turn}) {
       result.push_back(constants);
       for (Effect& one : result.back()) {
