@@ -46,6 +46,12 @@ std::string call_with(const std::vector<std::pair<std::string, std::string>>& op
   return text;
 }
 
+std::string call_of(const std::vector<std::string>& words) {
+  std::string text = "trussmap";
+  for (const std::string& word : words) text += " " + shell_quoted(word);
+  return text;
+}
+
 std::string next_name(const std::string& name) {
   const std::size_t end = name.find_last_not_of('/');
   const std::string stem = end == std::string::npos ? name : name.substr(0, end + 1);

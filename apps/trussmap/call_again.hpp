@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// The command as it was called, to be printed with other values for some of its options.
+// Command lines to be printed: as it was called, with other values for some options, and others.
 #pragma once
 
 #include <string>
@@ -16,6 +16,9 @@ void remember_call(int argc, char** argv);
 /// or added, words quoted for a shell where they have to be.
 [[nodiscard]] std::string call_with(
     const std::vector<std::pair<std::string, std::string>>& options);
+
+/// "trussmap build rec --model robot.toml", words quoted for a shell where they have to be.
+[[nodiscard]] std::string call_of(const std::vector<std::string>& words);
 
 /// "riddle-2" for "riddle", "riddle-3" for "riddle-2".
 [[nodiscard]] std::string next_name(const std::string& name);

@@ -4,6 +4,7 @@
 // trussmap compare: how far a model is from measurements, and where.
 #include "commands.hpp"
 #include "model_recordings.hpp"
+#include "next_step.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "results/criticism.hpp"
@@ -42,11 +43,11 @@ void run_compare(const CompareCommand& options) {
   }
   if (options.page.wanted()) {
     const std::string subject = subject_of(options.input.recordings, options.input.model);
+    const Page page = with_next(comparison_page(evidence_of(report.fit, report.found), subject),
+                                next_command(report.found), options.input, options.input.model);
     add_page(
         files,
-        with_tolerance(with_drive(comparison_page(evidence_of(report.fit, report.found), subject),
-                                  session.model.robot, session.rows.recordings),
-                       tolerance),
+        with_tolerance(with_drive(page, session.model.robot, session.rows.recordings), tolerance),
         options.page, session.rows.recordings);
   }
   files.write();

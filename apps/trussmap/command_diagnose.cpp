@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "floor_maps.hpp"
 #include "model_recordings.hpp"
+#include "next_step.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "results/criticism.hpp"
@@ -47,10 +48,12 @@ void run_diagnose(const DiagnoseCommand& options) {
   }
   progress.next();
   if (options.page.wanted()) {
-    const Page page = diagnosis_page(report.found,
-                                     evidence_of(session.rows.recordings, report.fit, report.found,
-                                                 diagnose_options(session.options)),
-                                     subject_of(options.input.recordings, options.input.model));
+    const Page found = diagnosis_page(report.found,
+                                      evidence_of(session.rows.recordings, report.fit, report.found,
+                                                  diagnose_options(session.options)),
+                                      subject_of(options.input.recordings, options.input.model));
+    const Page page =
+        with_next(found, next_command(report.found), options.input, options.input.model);
     add_page(files,
              with_tolerance(with_drive(with_constants(page, report.constants), session.model.robot,
                                        session.rows.recordings),

@@ -4,6 +4,7 @@
 // trussmap discover: diagnose, add and fit for as long as that is justified.
 #include "commands.hpp"
 #include "model_recordings.hpp"
+#include "next_step.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "results/criticism.hpp"
@@ -83,10 +84,13 @@ void run_discover(const DiscoverCommand& options) {
                                                &report, &session.rows.notes, tolerance}));
   }
   if (options.page.wanted()) {
-    const Page page = discovery_page(
+    const Page found = discovery_page(
         report.found,
         evidence_of(session.rows.recordings, report.found, diagnose_options(session.options)),
         subject_of(options.input.recordings, options.input.model));
+    const bool kept = !options.out.empty();
+    const Page page = with_next(found, next_command(report.found, kept), options.input,
+                                kept ? options.out : options.input.model);
     add_page(files,
              with_tolerance(with_drive(with_constants(page, report.constants), session.model.robot,
                                        session.rows.recordings),

@@ -35,6 +35,7 @@ struct PageContent;
 }
 
 struct BuiltMap;
+struct Comparison;
 struct ComparisonEvidence;
 struct Diagnosis;
 struct DiagnosisEvidence;
@@ -139,6 +140,26 @@ struct Tolerance {
 [[nodiscard]] Page with_tolerance(const Page& page, const Tolerance& tolerance);
 /// "passed: legs end 12 mm off (root mean square of 43 held out), within the tolerance of 20 mm".
 [[nodiscard]] std::string in_words(const Tolerance& tolerance);
+
+/// The command of `trussmap` that helps on from a result; none where a look at the floor, or at
+/// what happened, does.
+struct NextCommand {
+  std::string_view command;   ///< "fit"
+  std::string_view options;   ///< "--noise"; may be empty
+  std::string_view what_for;  ///< "writes the noise found into the model"
+};
+[[nodiscard]] std::optional<NextCommand> next_command(const Comparison& result);
+[[nodiscard]] std::optional<NextCommand> next_command(const Diagnosis& result);
+/// `kept`: the model found is in a file.
+[[nodiscard]] std::optional<NextCommand> next_command(const Discovery& result, bool kept);
+
+/// That as a command line to copy, and what it does.
+struct NextStep {
+  std::string line;      ///< quoted for a shell
+  std::string what_for;  ///< "adds what is missing, and what shows behind it"
+};
+/// The page with that below its verdict.
+[[nodiscard]] Page with_next_step(const Page& page, const NextStep& next);
 
 /// How a page came about, for its foot.
 struct Provenance {

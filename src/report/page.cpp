@@ -4,6 +4,7 @@
 
 #include "plot/chart_svg.hpp"
 #include "report/content_hash.hpp"
+#include "report/page_words.hpp"
 #include "text/xml_text.hpp"
 
 #include <algorithm>
@@ -159,6 +160,11 @@ std::string first_screen(const PageContent& page) {
     }
     text += "</dl>\n";
   }
+  if (page.next) {
+    text += fmt::format(
+        "<dl class=\"answers next\"><dt>Next command</dt><dd>{}:<pre>{}</pre></dd></dl>\n",
+        text::xml_escaped(capitalised(page.next->what_for)), text::xml_escaped(page.next->line));
+  }
   if (!page.notes.empty()) {
     text += "<ul class=\"notes\">\n";
     for (const std::string& note : page.notes) text += element("li", note);
@@ -275,6 +281,12 @@ std::string render_page(const PageContent& page, const PageRuntime& runtime) {
 }  // namespace trussmap::report
 
 namespace trussmap {
+
+Page with_next_step(const Page& page, const NextStep& next) {
+  PageContent content = page.content();
+  content.next = next;
+  return content;
+}
 
 Page with_provenance(const Page& page, const Provenance& provenance) {
   PageContent content = page.content();

@@ -68,6 +68,7 @@ struct PageContent {
   std::vector<PageAnswer> answers;
   std::vector<std::string> notes;
   std::vector<PageSection> sections;
+  std::optional<NextStep> next = std::nullopt;          ///< below the answers
   std::optional<Provenance> provenance = std::nullopt;  ///< at the foot
 };
 

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Which command helps on from a result.
+#include "report/noise_verdict.hpp"
+#include "trussmap/pages.hpp"
+
+namespace trussmap {
+namespace {
+
+constexpr NextCommand kBuild{"build", "", "makes the map with this model"};
+constexpr NextCommand kCheck{"check", "",
+                             "looks for mistakes in the recordings: units, signs, clocks"};
+
+}  // namespace
+
+std::optional<NextCommand> next_command(const Comparison& result) {
+  if (result.consistent()) return kBuild;
+  return NextCommand{"diagnose", "", "asks which physical effect is missing"};
+}
+
+std::optional<NextCommand> next_command(const Diagnosis& result) {
+  switch (result.verdict) {
+    case Diagnosis::Verdict::missing:
+      if (result.next_drive) {
+        return NextCommand{"plan", "",
+                           "plans the drive that decides between what looks alike here"};
+      }
+      return NextCommand{"discover", "", "adds what is missing, and what shows behind it"};
+    case Diagnosis::Verdict::unexplained_misfit:
+      if (result.objection == Objection::change || result.objection == Objection::place) break;
+      return kCheck;
+    case Diagnosis::Verdict::nothing_missing:
+      if (!report::noise_is_wrong(result)) return kBuild;
+      return NextCommand{"fit", "--noise", "writes the noise found into the model"};
+  }
+  return std::nullopt;
+}
+
+std::optional<NextCommand> next_command(const Discovery& result, bool kept) {
+  if (!result.consistent) return next_command(result.last);
+  const bool added = result.found.model.effects.size() > result.given.model.effects.size();
+  if (!added && report::noise_is_wrong(result.last)) return next_command(result.last);
+  if (added && !kept) return NextCommand{"discover", "", "writes the model found to a file"};
+  return kBuild;
+}
+
+}  // namespace trussmap
