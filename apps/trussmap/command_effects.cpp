@@ -48,6 +48,16 @@ results::CatalogueReport listed(const std::vector<const CatalogueEntry*>& entrie
   return report;
 }
 
+/// With a column as its name has it.
+std::string shapes_text(const CatalogueEntry& entry) {
+  constexpr std::string_view kColumn = "{}";
+  std::string text = fmt::format("{}", fmt::join(entry.pattern, "; "));
+  for (std::size_t at = text.find(kColumn); at != std::string::npos; at = text.find(kColumn)) {
+    text.replace(at, kColumn.size(), "COLUMN");
+  }
+  return text;
+}
+
 std::string entry_text(const CatalogueEntry& entry) {
   const ChannelFacts& channel = facts_of(entry.channel);
   const Explanation explained = explanation_of(results::effect_of(entry));
@@ -59,7 +69,7 @@ std::string entry_text(const CatalogueEntry& entry) {
   text += fmt::format(
       "  cause        {}\n  remedy       {}\n  acts on      {} (channel {})\n"
       "  goes with    {}\n  coefficient  {}\n",
-      entry.cause, entry.remedy, channel.does_what, channel.name, fmt::join(entry.pattern, "; "),
+      entry.cause, entry.remedy, channel.does_what, channel.name, shapes_text(entry),
       entry.unit.empty() ? "-" : entry.unit);
   if (entry.detectable > 0.0) {
     text += fmt::format("  seen from    {:g}{}{} on, roughly\n", entry.detectable,

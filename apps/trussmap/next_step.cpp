@@ -14,10 +14,8 @@
 namespace trussmap::app {
 namespace {
 
-const std::map<std::string_view, std::string> kOutput{{"build", "map.graphml"},
-                                                      {"discover", "found.toml"},
-                                                      {"fit", "fitted.toml"},
-                                                      {"plan", "waypoints.csv"}};
+const std::map<std::string_view, std::string> kOutput{
+    {"build", "map.graphml"}, {"discover", "found.toml"}, {"fit", "fitted.toml"}};
 
 bool takes_parts_of_recordings(std::string_view command) {
   return command != "build" && command != "check";

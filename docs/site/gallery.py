@@ -133,7 +133,8 @@ class Gallery:
         for name, text in self.texts.items():
             found += [f"{name} has no {field}" for field in FIELDS if not text.get(field)]
             if text.get("group") not in GROUPS:
-                found.append(f"{name}: {text.get('group')} is no group")
+                found.append(f"{name}: {text.get('group')} is no group, expected one of "
+                             + ", ".join(GROUPS))
         found += [f"{entry['name']}: no formula for channel {entry['channel']}"
                   for entry in self.entries if entry["channel"] not in CHANNELS]
         if not effects_table.is_right(self.entries):

@@ -242,6 +242,9 @@ class EffectReader {
     if (pattern.empty()) top_.fail("pattern", "\"pattern\" is missing, expected a list of shapes");
     const std::string parameters = this->parameters();
     for (const std::string& one : pattern) check_shape(one);
+    if (of_column_ && !usual_.empty()) {
+      top_.fail("pattern", "\"pattern\" has a column ({}) and parameters, expected one of both");
+    }
     return "{.name = " + in_cpp(name_) + ",\n  .channel = Channel::" + channel +
            ",\n  .pattern = " + in_cpp(pattern) + ",\n  .cause = " + in_cpp(top_.text("cause")) +
            ",\n  .remedy = " + in_cpp(top_.text("remedy")) +

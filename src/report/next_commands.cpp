@@ -22,10 +22,6 @@ std::optional<NextCommand> next_command(const Comparison& result) {
 std::optional<NextCommand> next_command(const Diagnosis& result) {
   switch (result.verdict) {
     case Diagnosis::Verdict::missing:
-      if (result.next_drive) {
-        return NextCommand{"plan", "",
-                           "plans the drive that decides between what looks alike here"};
-      }
       return NextCommand{"discover", "", "adds what is missing, and what shows behind it"};
     case Diagnosis::Verdict::unexplained_misfit:
       if (result.objection == Objection::change || result.objection == Objection::place) break;

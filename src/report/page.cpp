@@ -149,7 +149,7 @@ std::string first_screen(const PageContent& page) {
     }
     text += "</dl>\n";
   }
-  if (!page.answers.empty()) {
+  if (!page.answers.empty() || page.next) {
     text += "<dl class=\"answers\">\n";
     for (std::size_t k = 0; k < page.answers.size(); ++k) {
       const PageAnswer& one = page.answers[k];
@@ -158,12 +158,12 @@ std::string first_screen(const PageContent& page) {
       }
       text += element("dd", one.answer);
     }
+    if (page.next) {
+      text += fmt::format("<dt>Next command</dt><dd class=\"next\">{}:<pre>{}</pre></dd>\n",
+                          text::xml_escaped(capitalised(page.next->what_for)),
+                          text::xml_escaped(page.next->line));
+    }
     text += "</dl>\n";
-  }
-  if (page.next) {
-    text += fmt::format(
-        "<dl class=\"answers next\"><dt>Next command</dt><dd>{}:<pre>{}</pre></dd></dl>\n",
-        text::xml_escaped(capitalised(page.next->what_for)), text::xml_escaped(page.next->line));
   }
   if (!page.notes.empty()) {
     text += "<ul class=\"notes\">\n";

@@ -103,6 +103,8 @@ TEST(CatalogueMaker, SaysInOneLineWhatIsWrong) {
        ":14: \"sign\" and \"otherwise\" in [explanation] go together"},
       {"\"load scrub\"", "\"load slip\"", ":1: \"load slip\" stands in a file of another name"},
       {"columns = [\"payload_kg\"]", "", ":15: \"columns\" in [hidden] is missing"},
+      {"[explanation]", "[[parameters]]\nname = \"v0\"\nunit = \"1\"\n\n[explanation]",
+       ":4: \"pattern\" has a column ({}) and parameters"},
       {"rank = 185", "rank == 185", ":2: "}};
   const ScratchFolder scratch;
   for (const Fault& one : faults) {

@@ -31,8 +31,6 @@ TEST(NextCommands, GoWithTheVerdict) {
   EXPECT_EQ(next_command(found)->command, "build");
   found.verdict = Diagnosis::Verdict::missing;
   EXPECT_EQ(next_command(found)->command, "discover");
-  found.next_drive.emplace();
-  EXPECT_EQ(next_command(found)->command, "plan");
   found.verdict = Diagnosis::Verdict::unexplained_misfit;
   found.objection = Objection::chi2;
   EXPECT_EQ(next_command(found)->command, "check");
