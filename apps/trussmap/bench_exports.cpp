@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench_exports.hpp"
 
+#include "call_again.hpp"
 #include "page_runtime.hpp"
 #include "trussmap/calibrate.hpp"
 #include "trussmap/catalogue.hpp"
@@ -19,18 +20,6 @@
 
 namespace trussmap::app {
 namespace {
-
-/// One word of a shell's command line, whatever is in it.
-std::string quoted(const std::string& word) {
-  const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-           std::string("._/-+:,=").find(c) != std::string::npos;
-  });
-  if (plain) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
 
 bool is_of_catalogue(const Effect& effect) {
   try {
@@ -56,7 +45,7 @@ std::string exclusion(const WorkbenchStep& step, std::size_t recordings) {
 
 std::string commands(const BenchView& view, const BenchOrigin& origin) {
   std::vector<std::string> folders;
-  for (const std::string& one : origin.recordings) folders.push_back(quoted(one));
+  for (const std::string& one : origin.recordings) folders.push_back(shell_quoted(one));
   const std::string recordings =
       fmt::format("{}{}", fmt::join(folders, " "),
                   exclusion(view.log.steps[view.log.at], origin.recordings.size()));
@@ -65,7 +54,7 @@ std::string commands(const BenchView& view, const BenchOrigin& origin) {
       "#!/bin/sh\n# What was done in the workbench, by commands. The noise is estimated anew by "
       "the "
       "fit, so\n# that coefficients agree to a small part of their standard errors.\nset -e\n";
-  std::string model = quoted(origin.model);
+  std::string model = shell_quoted(origin.model);
   std::size_t number = 0;
   const auto had = [&given](const Effect& effect) {
     return std::any_of(given.effects.begin(), given.effects.end(),
@@ -83,10 +72,10 @@ std::string commands(const BenchView& view, const BenchOrigin& origin) {
   for (const Effect& effect : present) {
     if (had(effect)) continue;
     const std::string out = fmt::format("step{}.toml", ++number);
-    text += fmt::format("trussmap add {} {}", model, quoted(effect.name));
+    text += fmt::format("trussmap add {} {}", model, shell_quoted(effect.name));
     if (!is_of_catalogue(effect)) {
       text += fmt::format(" --channel {} --shape", trussmap::name_of(effect.channel));
-      for (const std::string& shape : texts_of(effect.shape)) text += " " + quoted(shape);
+      for (const std::string& shape : texts_of(effect.shape)) text += " " + shell_quoted(shape);
     }
     text += fmt::format(" --out {}\n", out);
     model = out;

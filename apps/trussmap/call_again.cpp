@@ -14,6 +14,8 @@ std::vector<std::string>& remembered() {
   return words;
 }
 
+}  // namespace
+
 std::string shell_quoted(const std::string& word) {
   constexpr std::string_view kPlain =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./,:@%";
@@ -22,8 +24,6 @@ std::string shell_quoted(const std::string& word) {
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
 }
-
-}  // namespace
 
 void remember_call(int argc, char** argv) {
   remembered().assign(argv + std::min(argc, 1), argv + argc);

@@ -17,6 +17,9 @@ void remember_call(int argc, char** argv);
 [[nodiscard]] std::string call_with(
     const std::vector<std::pair<std::string, std::string>>& options);
 
+/// One word of a shell's command line, whatever is in it.
+[[nodiscard]] std::string shell_quoted(const std::string& word);
+
 /// "trussmap build rec --model robot.toml", words quoted for a shell where they have to be.
 [[nodiscard]] std::string call_of(const std::vector<std::string>& words);
 

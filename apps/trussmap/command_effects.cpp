@@ -48,19 +48,12 @@ results::CatalogueReport listed(const std::vector<const CatalogueEntry*>& entrie
   return report;
 }
 
-/// With a column as its name has it.
-std::string shapes_text(const CatalogueEntry& entry) {
-  constexpr std::string_view kColumn = "{}";
-  std::string text = fmt::format("{}", fmt::join(entry.pattern, "; "));
-  for (std::size_t at = text.find(kColumn); at != std::string::npos; at = text.find(kColumn)) {
-    text.replace(at, kColumn.size(), "COLUMN");
-  }
-  return text;
-}
-
 std::string entry_text(const CatalogueEntry& entry) {
   const ChannelFacts& channel = facts_of(entry.channel);
-  const Explanation explained = explanation_of(results::effect_of(entry));
+  const Effect effect = results::effect_of(entry);
+  const Explanation explained = explanation_of(effect);
+  const std::vector<std::string> shapes =
+      effect.shape.empty() ? entry.pattern : texts_of(effect.shape);
   constexpr std::size_t kWidth = 85, kColumn = 15;
   std::string text = fmt::format(
       "{}\n\n  does         {}\n  look at      {}\n  drive        {}\n", name_with_brackets(entry),
@@ -69,7 +62,7 @@ std::string entry_text(const CatalogueEntry& entry) {
   text += fmt::format(
       "  cause        {}\n  remedy       {}\n  acts on      {} (channel {})\n"
       "  goes with    {}\n  coefficient  {}\n",
-      entry.cause, entry.remedy, channel.does_what, channel.name, shapes_text(entry),
+      entry.cause, entry.remedy, channel.does_what, channel.name, fmt::join(shapes, "; "),
       entry.unit.empty() ? "-" : entry.unit);
   if (entry.detectable > 0.0) {
     text += fmt::format("  seen from    {:g}{}{} on, roughly\n", entry.detectable,

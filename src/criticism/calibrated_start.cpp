@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/calibrated_start.hpp"
 
+#include "calibration/constant_values.hpp"
 #include "calibration/gross_starts.hpp"
 #include "calibration/sensor_places.hpp"
 #include "calibration/sought_constants.hpp"
@@ -134,16 +135,15 @@ std::vector<std::vector<Effect>> likely_constants(const std::vector<DrivenRecord
   const estimation::ProblemOptions used = fitting::fitter_options(given.options).problem;
   for (const calibration::GrossStart& start :
        calibration::gross_starts(recordings, given.model.robot, used)) {
+    calibration::ChannelGains gains =
+        calibration::side_by_side(given.model.robot, {{Channel::turn, start.turn},
+                                                      {Channel::difference, start.difference},
+                                                      {Channel::steer, start.steer}});
     for (const double travel : {0.0, start.turn}) {
+      gains[Channel::travel] = travel;
       result.push_back(constants);
       for (Effect& one : result.back()) {
-        one.coefficients.assign(one.shape.size(), 0.0);
-        if (one.channel == Channel::travel) one.coefficients = {travel};
-        if (one.channel == Channel::turn) one.coefficients = {start.turn};
-        if (one.channel == Channel::difference) {
-          one.coefficients = {start.difference * (1.0 + start.turn)};
-        }
-        if (one.channel == Channel::steer) one.coefficients = {start.steer};
+        one.coefficients.assign(one.shape.size(), calibration::gain_of(gains, one.channel));
       }
     }
   }

@@ -9,8 +9,6 @@
 #include "effects/steering_patterns.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <deque>
 #include <string>
 #include <utility>

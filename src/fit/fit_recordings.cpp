@@ -41,11 +41,6 @@ std::optional<std::size_t> sought_factor(const Model& model, const FitterOptions
   return place;
 }
 
-bool is_gross_misfit(const FitState& fit) {
-  constexpr double kFarTooLarge = 10.0;  // chi^2/dof
-  return fit.adjustment.chi2 > kFarTooLarge * std::max(1, fit.adjustment.dof);
-}
-
 /// It may not be fitted where it is lost, for it seems to tell nothing there.
 bool is_lost(const Fitting& fitted, std::size_t factor, const FitterOptions& options) {
   if (!is_gross_misfit(fitted.fit)) return false;

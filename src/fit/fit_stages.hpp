@@ -61,6 +61,9 @@ struct FitChange {
 [[nodiscard]] double chi2_of_all(const estimation::RecordingAdjustment& adjustment,
                                  const FitterOptions& options);
 
+/// Errors far beyond any noise: perhaps the fit is lost.
+[[nodiscard]] bool is_gross_misfit(const FitState& fit);
+
 void lay_out_recordings(const FitTask& task, Fitting& now);
 /// Since delays and steering were laid out, by more than their columns can stand for.
 [[nodiscard]] bool layout_moved(const Fitting& now);

@@ -91,14 +91,13 @@ void lay_start(const FitTask& task, StartKind kind, Fitting& now) {
 /// More sightings contradict the rest than are ever wrong or, where none may go and no compass
 /// led the start, the errors are far too large: perhaps the start was lost.
 bool start_lost(const FitTask& task, const FitState& fit) {
-  constexpr double kFarTooLarge = 10.0;  // chi^2/dof
   if (task.options.near != nullptr) return false;
   if (fit.common_errors > 0 && task.options.most_left_out < 1.0) {
     return fit.adjustment.gate_widened > 1.0;
   }
   const bool led = std::any_of(task.recorded.begin(), task.recorded.end(),
                                [](const DrivenRecording& one) { return one.drive.has_compass(); });
-  return !led && fit.adjustment.chi2 > kFarTooLarge * std::max(1, fit.adjustment.dof);
+  return !led && is_gross_misfit(fit);
 }
 
 /// From one other start. Nothing where it leads nowhere.

@@ -4,6 +4,7 @@
 
 #include "estimation/common_errors.hpp"
 #include "estimation/segment_noise.hpp"
+#include "estimation/student_tails.hpp"
 #include "fit/fit_stages.hpp"
 #include "fit/noise_under_effects.hpp"
 #include "odometry/wheels_and_gyro.hpp"
@@ -233,6 +234,11 @@ double chi2_of_all(const estimation::RecordingAdjustment& adjustment,
                    const FitterOptions& options) {
   return adjustment.chi2 +
          options.gate.value_or(0.0) * static_cast<double>(adjustment.left_out.size());
+}
+
+bool is_gross_misfit(const FitState& fit) {
+  constexpr double kFarTooLarge = 10.0;  // chi^2/dof
+  return fit.adjustment.chi2 > kFarTooLarge * std::max(1, fit.adjustment.dof);
 }
 
 Fitting fit_from(const std::vector<DrivenRecording>& recordings, const Model& model,

@@ -99,7 +99,8 @@ class Chainer {
   void chain_clusters() {
     const int count = static_cast<int>(graph_.vertices.size());
     for (int v = 0; v < count; ++v) {  // clusters with held headings grow from these, all at once
-      if (is_pose(graph_.vertices[idx(v)]) && held_[idx(v)] == estimation::held_all) roots_.push_back(v);
+      if (is_pose(graph_.vertices[idx(v)]) && held_[idx(v)] == estimation::held_all)
+        roots_.push_back(v);
     }
     for (const int v : roots_) cluster_[idx(v)] = 0;
     if (!roots_.empty()) grow(roots_, true);

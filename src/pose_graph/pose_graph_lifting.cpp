@@ -270,7 +270,8 @@ class Lifting {
       result[k] = {p.real(), p.imag(), pose ? std::arg((complex_row(at) * u)(0)) : 0.0};
       const Pose held = graph_.vertices[k].estimate.value_or(Pose{});
       if (pose && (held_[k] & estimation::held_heading) != 0) result[k].heading = held.heading;
-      if (pose && (held_[k] & estimation::held_position) != 0) result[k] = {held.x, held.y, result[k].heading};
+      if (pose && (held_[k] & estimation::held_position) != 0)
+        result[k] = {held.x, held.y, result[k].heading};
     }
     return result;
   }

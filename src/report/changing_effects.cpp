@@ -77,7 +77,7 @@ std::string changing_text(const Diagnosis& diagnosis) {
   std::string text;
   for (const ChangingCoefficient& one : diagnosis.changing) {
     if (text.empty()) text = "\nWhat changes while driving\n";
-    text += fmt::format("  {} (p {})\n", trussmap::in_words(one), probability_text(one.p_value));
+    text += fmt::format("  {} (p {})\n", in_words(one), probability_text(one.p_value));
   }
   return text;
 }

@@ -97,7 +97,7 @@ void add_effect_part(PageTable& table, EffectPart part, const SizedDiagnosis& si
   if (found != diagnosis.findings.end()) {
     const Effect& effect = found->effect;
     const FindingVerdict verdict = verdict_on(*found, size_of(*found, sized), diagnosis);
-    table.rows.push_back({name_of(part), verdict.words, name_in_words(effect),
+    table.rows.push_back({part_name(part), verdict.words, name_in_words(effect),
                           what_it_would_be(effect, size_of(*found, sized).range),
                           drop_text(diagnosis, found->held_out), chance_of(*found, diagnosis)});
     table.tones.push_back(verdict.tone);
@@ -107,7 +107,7 @@ void add_effect_part(PageTable& table, EffectPart part, const SizedDiagnosis& si
       std::any_of(diagnosis.unobservable.begin(), diagnosis.unobservable.end(),
                   [part](const Unobservable& one) { return part_of(one.effect) == part; });
   if (!unseen && part == EffectPart::gyro) return;  // few robots have one
-  table.rows.push_back({name_of(part),
+  table.rows.push_back({part_name(part),
                         unseen ? "cannot be seen in these data" : "not in these recordings", "-",
                         "-", "-", "-"});
   table.tones.push_back(Tone::neutral);
@@ -117,7 +117,7 @@ void add_found(PageTable& table, EffectPart part, const std::vector<EffectEviden
   for (const EffectEvidence& one : found) {
     const Effect& effect = one.estimate.effect;
     if (part_of(effect) != part) continue;
-    table.rows.push_back({name_of(part), "found, and in the model now", name_in_words(effect),
+    table.rows.push_back({part_name(part), "found, and in the model now", name_in_words(effect),
                           typeset(size_in_words(effect, one.range.least, one.range.most)), "-",
                           "-"});
     table.tones.push_back(Tone::good);
@@ -127,7 +127,7 @@ void add_found(PageTable& table, EffectPart part, const std::vector<EffectEviden
 void add_noise(PageTable& table, const Diagnosis& diagnosis) {
   if (noise_is_wrong(diagnosis)) {
     table.rows.push_back({"noise", "other than the model states", "estimated",
-                          typeset(trussmap::in_words(diagnosis.under->noise)), "-", "-"});
+                          typeset(in_words(diagnosis.under->noise)), "-", "-"});
     table.tones.push_back(Tone::bad);
     return;
   }
@@ -135,7 +135,7 @@ void add_noise(PageTable& table, const Diagnosis& diagnosis) {
   const NoiseTest& first = diagnosis.noise.front();
   const bool more = first.p_adjusted < diagnosis.level;
   table.rows.push_back({"noise", more ? "more than the model states" : "as the model states it",
-                        first.law, more ? typeset(trussmap::in_words(first)) : "-", "-",
+                        first.law, more ? typeset(in_words(first)) : "-", "-",
                         chance_text(first.p_adjusted)});
   table.tones.push_back(more ? Tone::bad : Tone::neutral);
 }
@@ -148,8 +148,8 @@ void add_event(PageTable& table, const char* part, const Diagnosis& diagnosis, b
   if (found == diagnosis.events.end()) return;
   const bool stands_out = found->p_adjusted < diagnosis.level;
   table.rows.push_back({part, stands_out ? "stands out" : "nothing out of line",
-                        fmt::format("{} {}", trussmap::name_of(found->kind), found->name),
-                        stands_out ? typeset(trussmap::in_words(*found)) : "-", "-",
+                        fmt::format("{} {}", name_of(found->kind), found->name),
+                        stands_out ? typeset(in_words(*found)) : "-", "-",
                         chance_text(found->p_adjusted)});
   table.tones.push_back(stands_out ? Tone::bad : Tone::neutral);
 }
@@ -172,7 +172,7 @@ PageTable tried_table(const SizedDiagnosis& sized) {
       const FindingSize& size = size_of(one, sized);
       const FindingVerdict verdict = verdict_on(one, size, diagnosis);
       const std::string from = seen_from(one, size);
-      table.rows.push_back({name_in_words(effect), name_of(part), verdict.words,
+      table.rows.push_back({name_in_words(effect), part_name(part), verdict.words,
                             at_most(effect, size.range), from.empty() ? "-" : from,
                             chance_of(one, diagnosis)});
       table.tones.push_back(verdict.tone);
@@ -234,13 +234,12 @@ PageTable others_table(const Diagnosis& diagnosis) {
   };
   for (std::size_t k = 0; k < std::min(kEventRows, diagnosis.noise.size()); ++k) {
     const NoiseTest& one = diagnosis.noise[k];
-    add("noise", one.law, one.p_adjusted < diagnosis.level ? trussmap::in_words(one) : "-",
-        one.score, one.p_adjusted);
+    add("noise", one.law, one.p_adjusted < diagnosis.level ? in_words(one) : "-", one.score,
+        one.p_adjusted);
   }
   for (std::size_t k = 0; k < std::min(kEventRows, diagnosis.events.size()); ++k) {
     const EventTest& one = diagnosis.events[k];
-    add(std::string(trussmap::name_of(one.kind)), one.name, trussmap::in_words(one), one.score,
-        one.p_adjusted);
+    add(std::string(name_of(one.kind)), one.name, in_words(one), one.score, one.p_adjusted);
   }
   return table;
 }
@@ -295,7 +294,7 @@ PageTable rivals_table(const SizedDiagnosis& sized) {
   table.texts = 4;
   const auto add = [&](const Finding& one, const std::string& alike) {
     const Effect& effect = one.effect;
-    table.rows.push_back({name_in_words(effect), name_of(part_of(effect)),
+    table.rows.push_back({name_in_words(effect), part_name(part_of(effect)),
                           what_it_would_be(effect, size_of(one, sized).range), cause_of(effect),
                           alike,
                           diagnosis.held_out.legs.empty()
@@ -329,7 +328,7 @@ PageSection tried_section(const SizedDiagnosis& sized) {
   if (!others.rows.empty()) section.blocks.emplace_back(std::move(others));
   PageTable unseen = unseen_table(diagnosis);
   if (!unseen.rows.empty()) section.blocks.emplace_back(std::move(unseen));
-  for (const std::string& line : trussmap::in_words(diagnosis.lacks)) {
+  for (const std::string& line : in_words(diagnosis.lacks)) {
     section.blocks.emplace_back("What these data lack: " + typeset(line) + ".");
   }
   for (const std::string& line : diagnosis.warnings) {

@@ -19,7 +19,7 @@ bool speaks_of(const Effect& effect, std::initializer_list<const char*> names) {
 
 }  // namespace
 
-const char* name_of(EffectPart part) {
+const char* part_name(EffectPart part) {
   constexpr std::array kNames{"wheels", "turning", "floor", "compass", "gyro", "sighting"};
   return kNames.at(static_cast<std::size_t>(part));
 }

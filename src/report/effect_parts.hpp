@@ -15,7 +15,7 @@ inline constexpr std::array kEffectParts{EffectPart::wheels, EffectPart::turning
                                          EffectPart::floor,  EffectPart::compass,
                                          EffectPart::gyro,   EffectPart::sighting};
 
-[[nodiscard]] const char* name_of(EffectPart part);
+[[nodiscard]] const char* part_name(EffectPart part);
 [[nodiscard]] EffectPart part_of(const Effect& effect);
 
 }  // namespace trussmap::report

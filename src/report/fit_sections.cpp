@@ -32,7 +32,7 @@ PageTable effect_table(const std::vector<EffectEvidence>& effects) {
     for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
       const QuantityText text = quantity_text(effect.coefficients[k], one.estimate.sd[k]);
       table.rows.push_back({k == 0 ? name_in_words(effect) : "",
-                            std::string(trussmap::name_of(effect.channel)),
+                            std::string(name_of(effect.channel)),
                             effect.shape[k % effect.shape.size()].text(), text.value, text.error});
     }
   }

@@ -168,7 +168,7 @@ std::string how_large(const EffectEvidence& effect) {
     return sized_in_words(effect);
   }
   return fmt::format("{}: {}{}.", capitalised(name_in_words(fitted.effect)),
-                     typeset(trussmap::in_words(fitted.effect, fitted.sd)), doubt_of(fitted));
+                     typeset(in_words(fitted.effect, fitted.sd)), doubt_of(fitted));
 }
 
 std::string sized_in_words(const EffectEvidence& effect) {
@@ -180,8 +180,7 @@ std::string sized_in_words(const EffectEvidence& effect) {
 }
 
 std::string advised_drive(const Advice& advice) {
-  if (advice.drive.empty())
-    return "A drive that would show more: " + trussmap::in_words(advice) + ".";
+  if (advice.drive.empty()) return "A drive that would show more: " + in_words(advice) + ".";
   return fmt::format("A drive that would show more: {} ({}: {}).", advice.drive, advice.lack,
                      advice.why);
 }
@@ -232,7 +231,7 @@ std::vector<std::string> unseen_names(const Diagnosis& diagnosis) {
 }
 
 std::string with_judged(const std::string& verdict, const UsedSightings& sightings) {
-  const std::string by = trussmap::in_words(sightings);
+  const std::string by = in_words(sightings);
   return by.empty() ? verdict : verdict + " " + capitalised(by) + ".";
 }
 
@@ -298,18 +297,17 @@ std::vector<std::string> others_notes(const Diagnosis& diagnosis, const std::str
     notes.push_back(
         fmt::format("The noise is not as the model states it: {}. All is judged by the "
                     "noise as estimated; {}.",
-                    typeset(trussmap::in_words(diagnosis.under->noise)), who_states));
+                    typeset(in_words(diagnosis.under->noise)), who_states));
   }
   for (const NoiseTest& one : diagnosis.noise) {
     if (one.p_adjusted >= diagnosis.level || !notes.empty()) continue;
-    notes.push_back(fmt::format("More noise than the model states ({}): {}.", one.law,
-                                typeset(trussmap::in_words(one))));
+    notes.push_back(
+        fmt::format("More noise than the model states ({}): {}.", one.law, typeset(in_words(one))));
     break;
   }
   for (const EventTest& one : diagnosis.events) {
     if (one.p_adjusted >= diagnosis.level) continue;
-    notes.push_back(
-        fmt::format("A single event stands out: {}.", typeset(trussmap::in_words(one))));
+    notes.push_back(fmt::format("A single event stands out: {}.", typeset(in_words(one))));
     break;
   }
   return notes;

@@ -28,8 +28,7 @@ template <class Told>
 [[nodiscard]] std::vector<std::string> sentences_of(const std::vector<Told>& all) {
   std::vector<std::string> sentences;
   sentences.reserve(all.size());
-  for (const Told& one : all)
-    sentences.push_back(typeset(capitalised(trussmap::in_words(one)) + "."));
+  for (const Told& one : all) sentences.push_back(typeset(capitalised(in_words(one)) + "."));
   return sentences;
 }
 

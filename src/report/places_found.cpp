@@ -48,7 +48,7 @@ plot::Chart field_chart(const FieldOfPlaces& field) {
   const wording::ShownUnit unit = wording::shown_unit(std::string(facts_of(field.channel).unit));
   const double most = std::max(field.most(), 1e-300);
   plot::Chart chart;
-  chart.id = fmt::format("places-{}", trussmap::name_of(field.channel));
+  chart.id = fmt::format("places-{}", name_of(field.channel));
   chart.title = capitalised(field_in_words(field.channel));
   chart.caption =
       "What it is near each place that the robot drove over, less its mean over the way: the mean "
@@ -76,7 +76,7 @@ std::string places_text(const Diagnosis& diagnosis) {
   std::string text;
   for (const FieldOfPlaces& one : diagnosis.places) {
     if (text.empty()) text = "\nWhat differs from place to place\n";
-    text += fmt::format("  {} (p {})\n", trussmap::in_words(one), probability_text(one.p_value));
+    text += fmt::format("  {} (p {})\n", in_words(one), probability_text(one.p_value));
   }
   return text;
 }

@@ -66,7 +66,7 @@ std::vector<std::string> sentences(const ModelEvidence& before, const ModelEvide
       reckoned_sentence(before, after, with)};
   if (after == nullptr) return result;
   const auto gain = local_gain(before.comparison.held_out, after->comparison.held_out);
-  if (gain) result.push_back(fmt::format("The gain is local: {}.", in_words(*gain)));
+  if (gain) result.push_back(fmt::format("The gain is local: {}.", gain_in_words(*gain)));
   return result;
 }
 
@@ -115,7 +115,7 @@ std::optional<LocalGain> local_gain(const HeldOut& before, const HeldOut& after)
   return 2 * gain.unchanged > gain.legs && improved ? std::optional(gain) : std::nullopt;
 }
 
-std::string in_words(const LocalGain& gain) {
+std::string gain_in_words(const LocalGain& gain) {
   return fmt::format("{} of {} legs unchanged, the worst {:.0f} \u2192 {:.0f} mm", gain.unchanged,
                      gain.legs, geometry::kMillimetres * gain.worst_before,
                      geometry::kMillimetres * gain.worst_after);

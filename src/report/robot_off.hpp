@@ -35,7 +35,7 @@ struct LocalGain {
 /// None where half of the legs change, or where there is no gain. Both are of the same legs.
 [[nodiscard]] std::optional<LocalGain> local_gain(const HeldOut& before, const HeldOut& after);
 /// "9 of 10 legs unchanged, the worst 195 → 34 mm".
-[[nodiscard]] std::string in_words(const LocalGain& gain);
+[[nodiscard]] std::string gain_in_words(const LocalGain& gain);
 
 /// A sentence on a leg, one on dead reckoning, one on where the gain is. `with`: "with hard iron".
 [[nodiscard]] std::vector<std::string> off_sentences(const ModelEvidence& before,

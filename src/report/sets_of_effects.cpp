@@ -93,7 +93,7 @@ PageTable sets_table(const Diagnosis& diagnosis) {
     if (table.rows.size() == kMostRows) break;
     std::vector<std::string> sizes;
     for (const ExplainingEffect& effect : one.effects) {
-      sizes.push_back(typeset(trussmap::in_words(effect.effect, effect.sd)));
+      sizes.push_back(typeset(in_words(effect.effect, effect.sd)));
     }
     table.rows.push_back({set_in_words(one) + (one.named ? " \u2013 named above" : ""),
                           fmt::format("{}", fmt::join(sizes, "; ")),

@@ -15,8 +15,8 @@ ordered_json effect_view(const Effect& effect) {
   ordered_json result = {{"id", effect.name},
                          {"name", name_in_words(effect)},
                          {"formula", formula_of(effect)},
-                         {"part", name_of(part_of(effect))},
-                         {"channel", trussmap::name_of(effect.channel)},
+                         {"part", part_name(part_of(effect))},
+                         {"channel", name_of(effect.channel)},
                          {"does", facts_of(effect.channel).does_what},
                          {"shape", texts_of(effect.shape)}};
   if (const CatalogueEntry* entry = wording::usual_entry(effect)) {

@@ -18,11 +18,12 @@ inline constexpr auto kDescribed<OpenParameter> = described(
     field("name", &OpenParameter::name, "in the shape"), field("unit", &OpenParameter::unit, "its"),
     field("usual", &OpenParameter::usual, "value"));
 
-/// Of an entry, to be explained.
+/// Of an entry, to be explained; what is of a column is of COLUMN.
 [[nodiscard]] inline Effect effect_of(const CatalogueEntry& entry) {
   Effect effect;
   effect.name = entry.name;
   effect.channel = entry.channel;
+  if (entry.of_covariate()) effect.shape = catalogue_effect(entry, "COLUMN").shape;
   return effect;
 }
 template <auto kMember>

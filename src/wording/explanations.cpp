@@ -77,8 +77,7 @@ Explanation explanation_of(const Effect& effect) {
   const effects::CatalogueRecord* record = effects::find_record(effect.name);
   if (record == nullptr) return of_own(effect);
   const effects::ExplanationText& known = record->explanation;
-  // Of the catalogue, with no column yet: as its name has it there.
-  const std::string covariate = effect.shape.empty() ? "COLUMN" : goes_with(effect);
+  const std::string covariate = goes_with(effect);
   const auto against = [&known](double value) { return value * known.sign < 0.0; };
   if (!effect.coefficients.empty() && std::ranges::all_of(effect.coefficients, against)) {
     return {with(known.otherwise, covariate), "", with(known.drive, covariate), true};

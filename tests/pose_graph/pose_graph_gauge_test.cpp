@@ -69,7 +69,8 @@ TEST(Gauge, HoldsAPositionOnlyWhereDisplacementsCarryTheDirection) {
   world.graph.displacement_edges.push_back(measure.displacement_edge(world.truth, 2, 3));
   world.graph.displacement_edges[0].measured =
       rotation(0.7) * world.graph.displacement_edges[0].measured;  // the map is turned by 0.7
-  EXPECT_EQ(choose_gauge(world.graph), (std::vector<std::uint8_t>{estimation::held_position, 0, 0, 0}));
+  EXPECT_EQ(choose_gauge(world.graph),
+            (std::vector<std::uint8_t>{estimation::held_position, 0, 0, 0}));
   const PoseGraphAdjustment result = adjust(world.graph);
   EXPECT_LT(result.chi2, 1e-20);
   EXPECT_NEAR(result.estimates[0].heading, 0.7, 1e-10);

@@ -316,7 +316,7 @@ TEST(ResultRows, ALocalGainIsSaidToBeOne) {
   after[4] = 0.034;
   const auto gain = local_gain(legs_off(before, 0.01), legs_off(after, 0.01));
   ASSERT_TRUE(gain.has_value());
-  EXPECT_EQ(in_words(*gain), "9 of 10 legs unchanged, the worst 195 \u2192 34 mm");
+  EXPECT_EQ(gain_in_words(*gain), "9 of 10 legs unchanged, the worst 195 \u2192 34 mm");
   const std::vector<double> far(10, 0.2);
   const std::vector<double> near(10, 0.02);
   EXPECT_FALSE(local_gain(legs_off(far, 0.01), legs_off(near, 0.01)).has_value());
