@@ -7,18 +7,18 @@
 #include "criticism/fewest_constants.hpp"
 #include "criticism/refits.hpp"
 #include "criticism/score_test.hpp"
-#include "effects/steering.hpp"
+#include "criticism/small_causes.hpp"
 #include "fit/fit_state.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 #include "trussmap/catalogue.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace trussmap::criticism {
 namespace {
 
-constexpr double kGrossMisfit = 10.0;  // chi^2/dof of the fit without
 constexpr std::size_t kMostMeasurements = 20000;
 
 /// Without coefficients.
@@ -30,14 +30,9 @@ std::vector<Effect> causes_for(const ModelFit& given, const ScoreTest& tests, bo
     const effects::CatalogueRecord* record = record_of(one);
     const Channel channel = one.effect.channel;
     if (record == nullptr || !one.family.empty() || record->entry.of_covariate()) continue;
-    const bool turns = channel == Channel::turn || channel == Channel::rotate ||
-                       channel == Channel::difference || channel == Channel::drift ||
-                       wheel_of(channel).has_value();
-    const bool moves = channel == Channel::travel || channel == Channel::advance ||
-                       channel == Channel::wheels || channel == Channel::sideways;
-    if (!turns && !moves && !effects::is_of_steered_drive(channel)) continue;
+    if (!acts_on_drive(channel)) continue;
     if (gyro && channel == Channel::drift) continue;  // its bias is what drifts
-    if (moves && !scale) continue;
+    if (moves_ahead(channel) && !scale) continue;
     if (!tests.is_present(one.effect)) result.push_back(one.effect);
   }
   return result;

@@ -16,8 +16,6 @@
 
 namespace trussmap::criticism {
 
-inline constexpr double kLittleLeft = 2.0;  ///< chi^2/dof of a fit that explains what is there
-
 /// The given fit with it, the last of the effects; nothing where none explains it. `scale`: a
 /// distance was measured.
 [[nodiscard]] std::optional<ModelFit> gross_cause(const std::vector<DrivenRecording>& recordings,

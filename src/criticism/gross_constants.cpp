@@ -10,6 +10,7 @@
 #include "criticism/gross_cause.hpp"
 #include "criticism/look_alikes.hpp"
 #include "criticism/refits.hpp"
+#include "criticism/small_causes.hpp"
 #include "criticism/tested_candidate.hpp"
 #include "drive/steered_motion.hpp"
 #include "fit/fit_state.hpp"
@@ -26,9 +27,8 @@
 namespace trussmap::criticism {
 namespace {
 
-constexpr double kMisfit = 1e-6;       // p of chi^2, below which they are asked for
-constexpr double kFarTooLarge = 10.0;  // chi^2/dof
-constexpr double kMostLeft = 0.5;      // of chi^2/dof, beside them
+constexpr double kMisfit = 1e-6;   // p of chi^2, below which they are asked for
+constexpr double kMostLeft = 0.5;  // of chi^2/dof, beside them
 
 /// Without a measured distance a smaller map has smaller errors.
 bool is_scale(Channel channel) {
@@ -66,7 +66,7 @@ std::optional<ModelFit> better_of(std::optional<ModelFit> one, std::optional<Mod
 }
 
 bool is_far_off(const std::optional<ModelFit>& fit) {
-  return !fit || fit->chi2 > kFarTooLarge * std::max(1, fit->dof);
+  return !fit || fit->chi2 > kGrossMisfit * std::max(1, fit->dof);
 }
 
 /// From a start of its own.
@@ -287,8 +287,13 @@ std::optional<GrossConstants> sure_constants(const std::vector<DrivenRecording>&
 std::optional<GrossConstants> gross_constants(const std::vector<DrivenRecording>& recordings,
                                               const ModelFit& given, const LegOptions& legs) {
   if (given.p_value > kMisfit) return std::nullopt;
+  const bool gross = given.chi2 > kGrossMisfit * std::max(1, given.dof);
+  const ExplainedBy small = gross ? explained_by(recordings, given) : ExplainedBy::nothing_small;
+  if (small == ExplainedBy::small_ones) return std::nullopt;
   std::optional<GrossConstants> constants = sure_constants(recordings, given, legs);
-  if (constants && per_dof(constants->fit) < kLittleLeft) return constants;
+  if (small == ExplainedBy::one || (constants && per_dof(constants->fit) < kLittleLeft)) {
+    return constants;
+  }
   const bool scale = calibration::measures_distance(
       recordings, fitting::fitter_options(given.options).problem, given.model.noise);
   if (std::optional<ModelFit> cause = gross_cause(recordings, given, scale)) {

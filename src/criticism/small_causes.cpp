@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/small_causes.hpp"
+
+#include "criticism/calibrated_start.hpp"
+#include "criticism/candidates.hpp"
+#include "criticism/effect_strength.hpp"
+#include "criticism/refits.hpp"
+#include "criticism/response.hpp"
+#include "criticism/score_test.hpp"
+#include "criticism/tested_candidate.hpp"
+#include "effects/channel_record.hpp"
+#include "effects/steering.hpp"
+#include "fit/fit_state.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+namespace trussmap::criticism {
+namespace {
+
+constexpr double kSmallShare = 0.05;  // of the motion
+constexpr std::size_t kFew = 3;
+constexpr int kManyDof = 50;  // fewer tell of constants alone
+
+/// By what a test estimates.
+bool is_small(const Effect& effect, const fitting::ShapeContext& context) {
+  if (effect.is_constant() && is_far_place(effect.channel, effect.coefficients.front())) {
+    return false;
+  }
+  const effects::ChannelRecord& record = effects::record_of(effect.channel);
+  if (record.wheel_pattern == nullptr || record.reading) return true;
+  const EffectRange g = range_of(effect, context);
+  return std::max(-g.least, g.most) < kSmallShare;
+}
+
+bool leaves_little(double chi2, int dof) {
+  return chi2 < kLittleLeft * std::max(1, dof);
+}
+
+struct FewCauses {
+  std::vector<Effect> effects;
+  bool small = true;
+};
+
+/// Those that promise to leave little, each found beside the ones before it; none where no few do.
+FewCauses promising_causes(const ModelFit& given) {
+  const ScoreTest about(*given.state);
+  std::vector<Candidate> candidates = candidates_for(*given.state, about.context());
+  std::erase_if(candidates, [](const Candidate& one) { return !one.family.empty(); });
+  FewCauses result;
+  ScoreTest tests = about;
+  for (double left = given.chi2; !leaves_little(left, given.dof);) {
+    if (!result.small || result.effects.size() == kFew) return {};
+    Effect best;
+    double most = 0.0;
+    visit_scores(tests, candidates, Resolution::quick, [&](std::size_t k, const Score& score) {
+      if (score.score <= most) return;
+      most = score.score;
+      best = candidates[k].effect;
+      best.coefficients = score.coefficients;
+    });
+    if (most == 0.0) return {};
+    result.small = is_small(best, tests.context());
+    // A large constant may have better words; large ones together say nothing.
+    if (!result.small && (best.is_constant() || !result.effects.empty())) return {};
+    left -= most;
+    best.coefficients.clear();
+    tests.condition_on(tests.columns(best));
+    result.effects.push_back(std::move(best));
+  }
+  return result;
+}
+
+}  // namespace
+
+bool moves_ahead(Channel channel) {
+  return channel == Channel::travel || channel == Channel::advance || channel == Channel::wheels ||
+         channel == Channel::sideways;
+}
+
+bool acts_on_drive(Channel channel) {
+  return moves_ahead(channel) || channel == Channel::turn || channel == Channel::rotate ||
+         channel == Channel::difference || channel == Channel::drift ||
+         wheel_of(channel).has_value() || effects::is_of_steered_drive(channel);
+}
+
+ExplainedBy explained_by(const std::vector<DrivenRecording>& recordings, const ModelFit& given) {
+  if (given.dof < kManyDof) return ExplainedBy::nothing_small;
+  const FewCauses causes = promising_causes(given);
+  if (causes.effects.empty()) return ExplainedBy::nothing_small;
+  const std::optional<ModelFit> fit = if_fitted_with(recordings, given, causes.effects);
+  if (!fit || !leaves_little(chi2_of_all(*fit), fit->dof)) return ExplainedBy::nothing_small;
+  return causes.small ? ExplainedBy::small_ones : ExplainedBy::one;
+}
+
+}  // namespace trussmap::criticism
