@@ -8,6 +8,7 @@
 #include "criticism/refits.hpp"
 #include "criticism/score_test.hpp"
 #include "criticism/small_causes.hpp"
+#include "effects/steering.hpp"
 #include "fit/fit_state.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 #include "trussmap/catalogue.hpp"
@@ -20,6 +21,17 @@ namespace trussmap::criticism {
 namespace {
 
 constexpr std::size_t kMostMeasurements = 20000;
+
+bool moves_ahead(Channel channel) {
+  return channel == Channel::travel || channel == Channel::advance || channel == Channel::wheels ||
+         channel == Channel::sideways;
+}
+
+bool acts_on_drive(Channel channel) {
+  return moves_ahead(channel) || channel == Channel::turn || channel == Channel::rotate ||
+         channel == Channel::difference || channel == Channel::drift ||
+         wheel_of(channel).has_value() || effects::is_of_steered_drive(channel);
+}
 
 /// Without coefficients.
 std::vector<Effect> causes_for(const ModelFit& given, const ScoreTest& tests, bool scale) {

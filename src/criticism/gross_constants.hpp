@@ -18,7 +18,8 @@
 // ones are left to the tests of all effects. Where much is left all the same the gate is lifted
 // while they are sought. One wheel of another size, or all of them, stands for a ratio, a scale and
 // a turning where it explains as much. Where constants leave much one error of another kind may
-// explain it (gross_cause.hpp). Without a measured distance no scale is asked for.
+// explain it (gross_cause.hpp). Without a measured distance no scale is asked for. None of this is
+// done where small errors explain a gross misfit (small_causes.hpp).
 #pragma once
 
 #include "trussmap/diagnose.hpp"

@@ -10,7 +10,6 @@
 #include "criticism/score_test.hpp"
 #include "criticism/tested_candidate.hpp"
 #include "effects/channel_record.hpp"
-#include "effects/steering.hpp"
 #include "fit/fit_state.hpp"
 
 #include <algorithm>
@@ -75,17 +74,6 @@ FewCauses promising_causes(const ModelFit& given) {
 }
 
 }  // namespace
-
-bool moves_ahead(Channel channel) {
-  return channel == Channel::travel || channel == Channel::advance || channel == Channel::wheels ||
-         channel == Channel::sideways;
-}
-
-bool acts_on_drive(Channel channel) {
-  return moves_ahead(channel) || channel == Channel::turn || channel == Channel::rotate ||
-         channel == Channel::difference || channel == Channel::drift ||
-         wheel_of(channel).has_value() || effects::is_of_steered_drive(channel);
-}
 
 ExplainedBy explained_by(const std::vector<DrivenRecording>& recordings, const ModelFit& given) {
   if (given.dof < kManyDof) return ExplainedBy::nothing_small;

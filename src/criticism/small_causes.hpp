@@ -17,11 +17,6 @@ namespace trussmap::criticism {
 inline constexpr double kGrossMisfit = 10.0;  ///< chi^2/dof of the fit without
 inline constexpr double kLittleLeft = 2.0;    ///< chi^2/dof of a fit that explains what is there
 
-/// Whether the channel's error moves the robot ahead or aside other than its wheels say.
-[[nodiscard]] bool moves_ahead(Channel channel);
-/// Or turns it, or is of a steered drive.
-[[nodiscard]] bool acts_on_drive(Channel channel);
-
 enum class ExplainedBy {
   nothing_small,
   one,        ///< error of any size that is no constant

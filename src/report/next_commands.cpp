@@ -36,8 +36,9 @@ std::optional<NextCommand> next_command(const Diagnosis& result) {
 std::optional<NextCommand> next_command(const Discovery& result, bool kept) {
   if (!result.consistent) return next_command(result.last);
   const bool added = result.found.model.effects.size() > result.given.model.effects.size();
+  if (kept) return kBuild;  // the model in the file has the noise found, too
   if (!added && report::noise_is_wrong(result.last)) return next_command(result.last);
-  if (added && !kept) return NextCommand{"discover", "", "writes the model found to a file"};
+  if (added) return NextCommand{"discover", "", "writes the model found to a file"};
   return kBuild;
 }
 

@@ -343,6 +343,32 @@ TEST(SlowGyro, AWalkIsNotOftenCalledADrift) {
   for (const double walk : {3e-6, 1e-5}) EXPECT_LE(named({}, walk, 700, 8), 2) << walk;
 }
 
+/// By the model that says so: a way straight ahead reads as a turn on the spot, whose travel is
+/// the noise of the turn.
+TEST(Gyro, BesideAWheelThatCountsBackwardsItIsAsNoisyAsStated) {
+  World world;
+  world.tours = 3;
+  for (const Channel wheel : {Channel::left, Channel::right}) {
+    Recording recording = simulated(world, {}, 41).recording;
+    for (double& travel : wheel == Channel::left ? recording.drive.left : recording.drive.right) {
+      travel = -travel;
+    }
+    Effect backwards;
+    backwards.name = "backwards";
+    backwards.channel = wheel;
+    backwards.shape = {Shape("1")};
+    backwards.coefficients = {-2.0};
+    Model model;
+    model.effects = {backwards};
+    FitOptions options;
+    options.fit_effects = false;
+    const ModelFit fit = fit_model({recording}, model, options);
+    EXPECT_GT(fit.dof, 200);
+    EXPECT_GT(fit.p_value, 1e-3) << fit.chi2 << " of " << fit.dof;
+    EXPECT_LT(fit.p_value, 1.0 - 1e-3) << fit.chi2 << " of " << fit.dof;
+  }
+}
+
 /// A heading that a robot integrated from its gyro, given as a compass.
 TEST(Gyro, AHeadingThatWasIntegratedIsNoCompass) {
   World world;

@@ -10,6 +10,7 @@
 #include "trussmap/pages.hpp"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -42,6 +43,17 @@ TEST(NextCommands, GoWithTheVerdict) {
   discovery.found.model.effects.emplace_back();
   EXPECT_EQ(next_command(discovery, false)->command, "discover");
   EXPECT_EQ(next_command(discovery, true)->command, "build");
+
+  Discovery noisy;
+  auto under = std::make_shared<FitWithNoise>();
+  under->noise.gain = 50.0;
+  under->noise.sources.emplace_back();
+  under->noise.sources.back().stated = 0.003;
+  under->noise.sources.back().sd = 0.006;
+  noisy.last.under = under;
+  EXPECT_EQ(next_command(noisy, false)->command, "fit");
+  EXPECT_EQ(next_command(noisy, true)->command, "build");  // the file has that noise
+
   discovery.consistent = false;
   discovery.last.verdict = Diagnosis::Verdict::unexplained_misfit;
   discovery.last.objection = Objection::chi2;
