@@ -31,9 +31,11 @@ bool MeasurementKind::shows(Channel channel, const Measurement& one) const {
       return effects::acts_on_fixes(channel);
     case RecordingStream::loops:
       return effects::acts_on_loops(channel);
-    default:
-      return false;
+    case RecordingStream::drive:
+    case RecordingStream::survey:
+      break;
   }
+  return false;
 }
 
 Matrix4 MeasurementKind::reading_variance(Channel channel, const Measurement& one) const {

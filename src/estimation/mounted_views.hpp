@@ -16,14 +16,24 @@ namespace trussmap::estimation {
 /// Nothing of the drive and of the survey.
 [[nodiscard]] inline effects::ViewPattern mounted_view(const Mountings& mounted,
                                                        RecordingStream stream) {
-  const std::optional<Mounting> none;
-  const std::optional<Mounting>& at = stream == RecordingStream::sightings ? mounted.sensor
-                                      : stream == RecordingStream::truth   ? mounted.tracked
-                                      : stream == RecordingStream::fixes   ? mounted.antenna
-                                      : stream == RecordingStream::loops   ? mounted.scanner
-                                                                           : none;
-  if (!at) return {};
-  return {.ahead = at->x, .left = at->y, .heading = at->yaw};
+  const auto view = [](const std::optional<Mounting>& at) -> effects::ViewPattern {
+    if (!at) return {};
+    return {.ahead = at->x, .left = at->y, .heading = at->yaw};
+  };
+  switch (stream) {
+    case RecordingStream::sightings:
+      return view(mounted.sensor);
+    case RecordingStream::truth:
+      return view(mounted.tracked);
+    case RecordingStream::fixes:
+      return view(mounted.antenna);
+    case RecordingStream::loops:
+      return view(mounted.scanner);
+    case RecordingStream::drive:
+    case RecordingStream::survey:
+      break;
+  }
+  return {};
 }
 
 }  // namespace trussmap::estimation

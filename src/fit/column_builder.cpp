@@ -38,10 +38,20 @@ std::vector<Part> parts_of(const Effect& effect, std::size_t sessions) {
 }
 
 Instant instant_of(estimation::RecordingStream stream) {
-  return stream == estimation::RecordingStream::truth   ? Instant::truth
-         : stream == estimation::RecordingStream::fixes ? Instant::fix
-         : stream == estimation::RecordingStream::loops ? Instant::loop
-                                                        : Instant::sighting;
+  using enum estimation::RecordingStream;
+  switch (stream) {
+    case truth:
+      return Instant::truth;
+    case fixes:
+      return Instant::fix;
+    case loops:
+      return Instant::loop;
+    case drive:
+    case sightings:
+    case survey:
+      break;
+  }
+  return Instant::sighting;
 }
 
 /// Where a channel's shapes are asked for.

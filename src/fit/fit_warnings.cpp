@@ -28,9 +28,12 @@ std::string kinds_left_out(const FitState& fit) {
 }
 
 std::string left_out_warning(const FitState& fit, const std::optional<std::size_t>& with_missing) {
-  std::string text =
-      text::joined(fit.adjustment.left_out.size(), " ", kinds_left_out(fit), " were left out");
+  const bool one = fit.adjustment.left_out.size() == 1;
+  std::string text = one ? text::joined("one of the ", kinds_left_out(fit), " was left out")
+                         : text::joined(fit.adjustment.left_out.size(), " ", kinds_left_out(fit),
+                                        " were left out");
   if (!with_missing) return text;
+  if (one && *with_missing == 0) return text + "; with what is missing added it fits";
   return text + (*with_missing == 0 ? "; with what is missing added all of them fit"
                                     : text::joined("; with what is missing added ", *with_missing,
                                                    " still would be"));
