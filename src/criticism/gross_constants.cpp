@@ -291,7 +291,7 @@ std::optional<GrossConstants> gross_constants(const std::vector<DrivenRecording>
   const ExplainedBy small = gross ? explained_by(recordings, given) : ExplainedBy::nothing_small;
   if (small == ExplainedBy::small_ones) return std::nullopt;
   std::optional<GrossConstants> constants = sure_constants(recordings, given, legs);
-  if (small == ExplainedBy::one || (constants && per_dof(constants->fit) < kLittleLeft)) {
+  if (small == ExplainedBy::few || (constants && per_dof(constants->fit) < kLittleLeft)) {
     return constants;
   }
   const bool scale = calibration::measures_distance(

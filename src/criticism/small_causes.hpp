@@ -4,8 +4,8 @@
 // Whether a gross misfit needs a gross cause. Noise that is small beside a long drive makes a gross
 // misfit of what moves the robot by a percent, too. Tests that are linear about the fit are right
 // for those, and much cheaper than the fits by which gross causes are sought: the error that takes
-// most of chi^2 away, the next beside it, and so on; then one fit of all says whether they hold
-// what the tests promise.
+// most of chi^2 away, the next beside it, and so on until no more is left than noise leaves; then
+// one fit of all says whether they hold what the tests promise.
 #pragma once
 
 #include "trussmap/fit_model.hpp"
@@ -19,8 +19,9 @@ inline constexpr double kLittleLeft = 2.0;    ///< chi^2/dof of a fit that expla
 
 enum class ExplainedBy {
   nothing_small,
-  one,        ///< error of any size that is no constant
-  small_ones  ///< at most three, none of which moves the robot by a twentieth of its motion
+  few,        ///< errors, up to little: one that is no constant, of any size, or small ones
+  small_ones  ///< up to nothing: at most three, none of which moves the robot by a twentieth of its
+              ///< motion
 };
 
 /// `given`: a fit that leaves a gross misfit.
