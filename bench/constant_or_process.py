@@ -12,42 +12,25 @@ turns (without), of size s, 1 to 8 %. Each is driven three times:
     process    each leg misreads its travel, or its turns, by a factor of its own, normal with standard deviation s
     both       both
 
-and `discover` is asked. Named: an effect that it found is that constant (or both wheels' scale, or turning, in its
-place). Held: its 95 % interval (1.96 standard errors) has the value that was drawn. Of a process alone a constant is
+and `discover` is asked. Named: an effect that it found is that constant (or both wheels' scale in place of the
+travel's). Held: its 95 % interval (1.96 standard errors) has the value that was drawn. Of a process alone a constant is
 named by mistake. Prints what fails, and a table; the exit status is 1 where a target is missed.
 """
 import argparse
 import concurrent.futures
-import csv
 import json
 import math
-import os
 import pathlib
 import random
-import subprocess
 import sys
 import tempfile
+
+from gross_bench import Bench, rows_of, write_rows
 
 KINDS = ("constant", "process", "both")
 NAMES = {"travel": ("travel scale", "wheel scale"), "turn": ("wheelbase",)}
 TARGETS = {"constant": (0.95, 1.0), "process": (0.0, 0.05), "both": (0.95, 1.0)}  # share that is named
 HELD = (0.92, 0.98)
-LONGEST = 600  # s, of one command
-
-
-def run(command, *arguments):
-    """Whether it came to an end: exit status 0, or 1 as misfits have."""
-    try:
-        done = subprocess.run([str(one) for one in (command, *arguments)], capture_output=True, timeout=LONGEST,
-                              check=False, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
-    except subprocess.TimeoutExpired:
-        return False
-    return done.returncode in (0, 1)
-
-
-def rows_of(file):
-    with open(file, newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
 
 
 def spoil(folder, channel, size, draw):
@@ -62,32 +45,28 @@ def spoil(folder, channel, size, draw):
         mean, half = (left + right) / 2.0, (right - left) / 2.0
         mean, half = (mean * factor, half) if channel == "travel" else (mean, half * factor)
         row["left"], row["right"] = repr(mean - half), repr(mean + half)
-    with open(folder / "drive.csv", "w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, rows[0].keys())
-        writer.writeheader()
-        writer.writerows(rows)
+    write_rows(folder / "drive.csv", rows)
 
 
-def judged(command, seed, number, kind):
-    draw = random.Random(f"{seed} {number}")
+def judged(bench, number, kind):
+    draw = random.Random(f"{bench.seed} {number}")
     channel = ("travel", "turn")[number % 2]
     size = 0.01 * math.exp(draw.uniform(0.0, math.log(8.0)))
     g = size * draw.choice((-1.0, 1.0))
     result = {"number": number, "kind": kind, "channel": channel, "g": g, "named": None, "held": None, "found": ""}
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)
-        options = ["--mesh", "4x4", "--tours", 3, "--fixes", 1, "--seed", 10000 * seed + number]
+        options = ["--mesh", "4x4", "--tours", 3, "--fixes", 1, "--seed", 10000 * bench.seed + number]
         if channel == "turn":
             options.append("--no-compass")
         if kind != "process":
             options += ["--effect", f"{NAMES[channel][0]}={g!r}"]
-        if not run(command, "simulate", *options, "--out", folder / "recording"):
+        if not bench.run("simulate", *options, "--out", folder / "recording"):
             sys.exit(f"world {number}: cannot be simulated")
         if kind != "constant":
             spoil(folder / "recording", channel, size, draw)
         out = folder / "found.json"
-        run(command, "discover", folder / "recording", "--model", folder / "recording/model.toml", "--threads", 1,
-            "--json", out)
+        bench.run("discover", folder / "recording", "--model", folder / "recording/model.toml", "--json", out)
         if not out.exists():
             return {**result, "found": "discover failed", "named": False}
         effects = json.loads(out.read_text())["effects"]
@@ -107,11 +86,11 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=1)
     asked = parser.parse_args()
-    command = asked.command.resolve()
+    bench = Bench(asked.command, asked.seed)
     results = []
     with concurrent.futures.ThreadPoolExecutor(asked.jobs) as pool:
         cases = [(number, kind) for number in range(asked.worlds) for kind in KINDS]
-        for one in pool.map(lambda case: judged(command, asked.seed, *case), cases):
+        for one in pool.map(lambda case: judged(bench, *case), cases):
             results.append(one)
             if one["named"] != (one["kind"] != "process") or one["held"] is False:
                 print(f"{one['number']:3d} {one['kind']}, {one['channel']} {one['g']:+.4f}: {one['found'] or 'nothing'}",

@@ -65,8 +65,12 @@ std::optional<ModelFit> better_of(std::optional<ModelFit> one, std::optional<Mod
   return one;
 }
 
+bool is_far_off(const ModelFit& fit) {
+  return fit.chi2 > kGrossMisfit * std::max(1, fit.dof);
+}
+
 bool is_far_off(const std::optional<ModelFit>& fit) {
-  return !fit || fit->chi2 > kGrossMisfit * std::max(1, fit->dof);
+  return !fit || is_far_off(*fit);
 }
 
 /// From a start of its own.
@@ -287,8 +291,8 @@ std::optional<GrossConstants> sure_constants(const std::vector<DrivenRecording>&
 std::optional<GrossConstants> gross_constants(const std::vector<DrivenRecording>& recordings,
                                               const ModelFit& given, const LegOptions& legs) {
   if (given.p_value > kMisfit) return std::nullopt;
-  const bool gross = given.chi2 > kGrossMisfit * std::max(1, given.dof);
-  const ExplainedBy small = gross ? explained_by(recordings, given) : ExplainedBy::nothing_small;
+  const ExplainedBy small =
+      is_far_off(given) ? explained_by(recordings, given) : ExplainedBy::nothing_small;
   if (small == ExplainedBy::small_ones) return std::nullopt;
   std::optional<GrossConstants> constants = sure_constants(recordings, given, legs);
   if (small == ExplainedBy::few || (constants && per_dof(constants->fit) < kLittleLeft)) {

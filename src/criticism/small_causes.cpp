@@ -55,11 +55,10 @@ struct FewCauses {
 
 /// Those that promise to leave little, each found beside the ones before it; none where no few do.
 FewCauses promising_causes(const ModelFit& given) {
-  const ScoreTest about(*given.state);
-  std::vector<Candidate> candidates = candidates_for(*given.state, about.context());
+  ScoreTest tests(*given.state);
+  std::vector<Candidate> candidates = candidates_for(*given.state, tests.context());
   std::erase_if(candidates, [](const Candidate& one) { return !one.family.empty(); });
   FewCauses result;
-  ScoreTest tests = about;
   double left = given.chi2;
   while (!leaves_nothing(left, given.dof) && result.small && result.effects.size() < kFew) {
     Effect best;

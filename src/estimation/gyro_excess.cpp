@@ -31,8 +31,8 @@ std::vector<Effect> wrong_signs(const Model& model) {
 GyroExcess gyro_excess(const MotionRows& drive, const std::vector<SegmentRow>& rows,
                        const Model& model) {
   GyroExcess result;
-  const std::vector<Effect> wrong = wrong_signs(model);
   if (drive.gyro.empty() || rows.empty()) return result;
+  const std::vector<Effect> wrong = wrong_signs(model);
   const auto count = static_cast<Eigen::Index>(rows.size());
   Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(count, 4);
   Eigen::VectorXd excess = Eigen::VectorXd::Zero(count);
