@@ -164,19 +164,29 @@ struct WheelPair {
   [[nodiscard]] WheelTravel at(std::size_t row) const { return {left[row], right[row]}; }
 };
 
+/// Of two wheels: how they move the body by effects that have their factors far from the robot's.
+struct WheelFactors {
+  Eigen::Matrix2d by_travel;  ///< d(forward [m], turn [rad])/d(left, right) [m]
+  Eigen::Matrix2d shown;      ///< d(forward, turn) as the wheels show it/d(as it is)
+};
+
 /// A drive as motion of its robot's body, row by row: by the wheels as with_wheels makes it; then
-/// steering effects and the gyro are taken in, once each.
+/// steering effects or far factors of wheels, and the gyro are taken in, once each.
 struct MotionRows : DriveColumns {
   std::vector<double> forward;        ///< m
   std::vector<double> turn;           ///< rad to the left
   std::vector<double> sideways;       ///< m that the body moves to the left; empty = 0
-  WheelPair pair;                     ///< of two wheels: their own travels; empty of other drives
+  /// Of two wheels: their own travels, by the robot's wheelbase; empty of other drives.
+  WheelPair pair;
   std::vector<WheelColumn> wheels;    ///< the robot's own; empty of two wheels, and of a unicycle
   std::vector<std::string> unicycle;  ///< the columns of a unicycle; of others empty
   std::vector<GyroShare> gyro;        ///< once it is taken in
   /// m ahead and rad that steering effects (effects/steering.hpp) have added; shapes see the drive
   /// without. Empty where none are taken in.
   std::vector<std::array<double, 2>> steered;
+  /// Once far factors of wheels (effects/wheel_factors.hpp) are taken in; shapes and effects see
+  /// the drive without.
+  std::optional<WheelFactors> factors;
 
   /// Whether the robot has a left and a right wheel, of which each can be wrong by itself.
   [[nodiscard]] bool of_two_wheels() const { return wheels.empty() && unicycle.empty(); }

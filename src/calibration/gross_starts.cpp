@@ -227,6 +227,15 @@ class Disagreement {
     return by_chords_ ? of_chords(tried) : of_returns(tried);
   }
 
+  /// With the factor of the way that goes with it, where returns tell it.
+  [[nodiscard]] GrossStart completed(GrossStart tried) const {
+    if (by_chords_) return tried;
+    if (const std::optional<double> factor = way_factor(missed_with(tried))) {
+      tried.travel = *factor - 1.0;
+    }
+    return tried;
+  }
+
  private:
   [[nodiscard]] double of_chords(const GrossStart& tried) const {
     std::vector<double> ratios;
@@ -246,25 +255,59 @@ class Disagreement {
     return sum / static_cast<double>(ratios.size());
   }
 
-  [[nodiscard]] double of_returns(const GrossStart& tried) const {
-    double sum = 0.0;
-    std::size_t count = 0;
+  /// A return: what lies between the two places of its landmark.
+  struct Missed {
+    Vector2 driven = Vector2::Zero();  ///< m, as the wheels have it
+    Vector2 seen = Vector2::Zero();    ///< m, as the sightings have it
+    double away = 0.0;                 ///< m that the robot was away, as the wheels have it
+  };
+
+  [[nodiscard]] std::vector<Missed> missed_with(const GrossStart& tried) const {
+    std::vector<Missed> missed;
     for (const Course& course : courses_) {
       const std::vector<Pose> poses = poses_with(tried, course.steps, robot_);
       for (const Chord& one : course.returns) {
         const Mark& from = course.marks[one.from];
         const Mark& to = course.marks[one.to];
-        double away = 0.0;
+        Missed next;
         for (std::size_t k = from.step; k <= to.step; ++k) {
-          away = std::max(away, (poses[k].position() - poses[from.step].position()).norm());
+          next.away =
+              std::max(next.away, (poses[k].position() - poses[from.step].position()).norm());
         }
-        const double missed =
-            (seen_from(poses[to.step], to) - seen_from(poses[from.step], from)).norm();
-        sum += away > 0.0 ? std::min(1.0, missed / away) : 1.0;
-        ++count;
+        next.driven = poses[to.step].position() - poses[from.step].position();
+        next.seen = rotation(poses[to.step].heading) * to.offset -
+                    rotation(poses[from.step].heading) * from.offset;
+        missed.push_back(next);
       }
     }
-    return sum / static_cast<double>(count);
+    return missed;
+  }
+
+  /// Of the way, by least squares of what is missed as a share of how far away the robot was.
+  /// Nothing where landmarks are hardly seen from afar.
+  [[nodiscard]] static std::optional<double> way_factor(const std::vector<Missed>& missed) {
+    constexpr double kLeastSeen = 0.05;  // of how far away, rms
+    constexpr double kMost = 5.0;
+    double both = 0.0;
+    double seen = 0.0;
+    for (const Missed& one : missed) {
+      if (!(one.away > 0.0)) continue;
+      both -= one.driven.dot(one.seen) / (one.away * one.away);
+      seen += one.seen.squaredNorm() / (one.away * one.away);
+    }
+    if (seen < kLeastSeen * kLeastSeen * static_cast<double>(missed.size())) return std::nullopt;
+    return 1.0 / std::clamp(both / seen, 1.0 / kMost, kMost);
+  }
+
+  [[nodiscard]] double of_returns(const GrossStart& tried) const {
+    const std::vector<Missed> missed = missed_with(tried);
+    const double factor = way_factor(missed).value_or(1.0);
+    double sum = 0.0;
+    for (const Missed& one : missed) {
+      const double share = (one.driven + one.seen / factor).norm() / one.away;
+      sum += one.away > 0.0 ? std::min(1.0, share) : 1.0;
+    }
+    return sum / static_cast<double>(missed.size());
   }
 
   const Robot& robot_;
@@ -357,7 +400,7 @@ std::vector<GrossStart> starts_by_places(const std::vector<DrivenRecording>& rec
   std::vector<GrossStart> starts;
   starts.reserve(kept.size());
   for (const Rated& one : kept) {
-    starts.push_back(descended(disagreement, one, beside).start(beside));
+    starts.push_back(disagreement.completed(descended(disagreement, one, beside).start(beside)));
   }
   return starts;
 }

@@ -10,7 +10,8 @@
 //             absolute residuals
 //   chords    between places that a survey, fixes or truth know, a few at a time, beside those of
 //             dead reckoning: their ratios are all the same
-//   returns   to a landmark: how far dead reckoning misses it, as a share of how far away it was
+//   returns   to a landmark: how far dead reckoning misses it, as a share of how far away it was;
+//             where it was seen from afar, with the factor of the way that the sightings have it
 //
 // Chords and returns are tried over a grid of factors of turning (1/5 to 5) and, of two wheels, of
 // right wheel over left (1/5 to 5); of a robot that steers, of the steering's offset (0.36 rad).
@@ -20,6 +21,7 @@
 #include "trussmap/recording.hpp"
 #include "trussmap/robot.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace trussmap::calibration {
@@ -27,8 +29,9 @@ namespace trussmap::calibration {
 /// g of the channels of effects, with the shape 1.
 struct GrossStart {
   double turn = 0.0;
-  double difference = 0.0;  ///< of two wheels; else 0
-  double steer = 0.0;       ///< rad; of a robot that steers, else 0
+  double difference = 0.0;                      ///< of two wheels; else 0
+  double steer = 0.0;                           ///< rad; of a robot that steers, else 0
+  std::optional<double> travel = std::nullopt;  ///< where returns tell it
 };
 
 /// The most promising first, a handful at most; none where the stated constants are as good. The

@@ -126,8 +126,8 @@ std::map<Channel, double> steering_of(const Model& calibrated) {
   return result;
 }
 
-/// Each as it is, and as of wheels that are all so much larger: neither turns nor returns tell the
-/// way's scale.
+/// Each with the way's scale where it tells it; else as it is, and as of wheels that are all so
+/// much larger.
 std::vector<std::vector<Effect>> likely_constants(const std::vector<DrivenRecording>& recordings,
                                                   const ModelFit& given,
                                                   const std::vector<Effect>& constants) {
@@ -139,7 +139,9 @@ std::vector<std::vector<Effect>> likely_constants(const std::vector<DrivenRecord
         calibration::side_by_side(given.model.robot, {{Channel::turn, start.turn},
                                                       {Channel::difference, start.difference},
                                                       {Channel::steer, start.steer}});
-    for (const double travel : {0.0, start.turn}) {
+    const std::vector<double> ways =
+        start.travel ? std::vector{*start.travel} : std::vector{0.0, start.turn};
+    for (const double travel : ways) {
       gains[Channel::travel] = travel;
       result.push_back(constants);
       for (Effect& one : result.back()) {

@@ -3,7 +3,6 @@
 #include "criticism/trends.hpp"
 
 #include "criticism/tested_candidate.hpp"
-#include "drive/body_motion.hpp"
 #include "drive/row_variables.hpp"
 #include "drive/wheel_kinematics.hpp"
 #include "effects/place_patterns.hpp"
@@ -74,6 +73,9 @@ Variable place_variable(const fitting::FitState& fit) {
 /// over half a window, as shapes see it beside a change of motion.
 double faintest_turn(const fitting::FitState& fit) {
   const Noise& noise = fit.model.noise;
+  Noise wheels_alone;
+  wheels_alone.left = noise.left;
+  wheels_alone.right = noise.right;
   std::vector<double> deviations;
   for (const DrivenRecording& recording : fit.recordings) {
     const MotionRows& drive = recording.drive;
@@ -82,9 +84,7 @@ double faintest_turn(const fitting::FitState& fit) {
       const Robot& robot = fit.model.robot;
       const double variance =
           drive.wheels.empty()
-              ? wheel_arc_noise(drive::noisy_travel(drive, row, robot), robot.wheelbase,
-                                {noise.left, noise.right})
-                    .heading
+              ? odometry::wheels_noise(drive, row, 1.0, duration, robot, wheels_alone).heading
               : odometry::row_noise(drive, row, 1.0, duration, robot, noise).heading;
       if (variance == 0.0) continue;
       const double window = std::max(duration, 0.5 * drive::kRateWindow);

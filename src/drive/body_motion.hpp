@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include <Eigen/Core>
+
 namespace trussmap::drive {
 
 /// Of two wheels that are so far apart (m), or of what two wheels there would show.
@@ -33,11 +35,29 @@ namespace trussmap::drive {
   return std::max(std::abs(motion.forward), 0.5 * robot.wheelbase * std::abs(motion.turn));
 }
 
-/// Two wheels' own travels in a row; of another drive what two wheels would show of its wheels'
-/// motion.
+/// d(forward, turn)/d(left, right) of two wheels, or of those that a drive without shows.
+[[nodiscard]] inline Eigen::Matrix2d by_travel(const Robot& robot) {
+  const double per_metre = 1.0 / robot.wheelbase;
+  return (Eigen::Matrix2d() << 0.5, 0.5, -per_metre, per_metre).finished();
+}
+[[nodiscard]] inline Eigen::Matrix2d by_travel(const MotionRows& drive, const Robot& robot) {
+  return drive.factors ? drive.factors->by_travel : by_travel(robot);
+}
+
+/// A motion as the wheels show it, whose factors may have been taken in.
+[[nodiscard]] inline BodyMotion as_shown(const MotionRows& drive, const BodyMotion& motion) {
+  if (!drive.factors) return motion;
+  const Eigen::Vector2d shown = drive.factors->shown * Eigen::Vector2d(motion.forward, motion.turn);
+  return {shown[0], motion.sideways, shown[1]};
+}
+
+/// Two wheels' own travels in a row, as they are read; of another drive what two wheels would show
+/// of its wheels' motion.
 [[nodiscard]] inline WheelTravel own_travel(const MotionRows& drive, std::size_t row,
                                             const Robot& robot) {
-  return drive.pair.empty() ? wheel_travel(drive.wheel_motion(row), robot) : drive.pair.at(row);
+  return drive.pair.empty() || drive.factors
+             ? wheel_travel(as_shown(drive, drive.wheel_motion(row)), robot)
+             : drive.pair.at(row);
 }
 
 /// Both wheels', m.
@@ -55,7 +75,7 @@ namespace trussmap::drive {
   constexpr double kFarLess = 0.5;
   const WheelTravel own = own_travel(drive, row, robot);
   if (drive.gyro.empty()) return own;
-  const WheelTravel both = wheel_travel(drive.motion(row), robot);
+  const WheelTravel both = wheel_travel(as_shown(drive, drive.motion(row)), robot);
   return total_travel(both) < kFarLess * total_travel(own) ? own : both;
 }
 

@@ -11,6 +11,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <Eigen/Core>
+
 namespace trussmap::drive {
 
 struct RowMotion {
@@ -24,6 +26,7 @@ struct RowMotion {
   double gyro_lateral = 0.0;  ///< as GyroShare::lateral
   double gyro_share = 0.0;    ///< as GyroShare::turn
   bool gyro_reads = false;
+  const Eigen::Matrix2d* shown = nullptr;  ///< as WheelFactors::shown, of what is taken in
   const std::vector<WheelColumn>* wheels = nullptr;  ///< of the drive, where it has other wheels
   std::size_t row = 0;                               ///< of the drive
 
@@ -64,12 +67,15 @@ struct RowMotion {
   row.gyro_reads = std::isfinite(gyro.variance);
   return row;
 }
-/// The same of a drive's row, whether or not the gyro was taken in.
+/// The same of a drive's row, whether or not the gyro was taken in; as it was read, where factors
+/// of its wheels were.
 [[nodiscard]] inline RowMotion row_motion(const MotionRows& drive, std::size_t row,
                                           const Robot& robot) {
-  if (drive.gyro.empty()) return shown_motion(drive, row, robot);
-  RowMotion motion = row_motion(drive.gyro[row], drive.duration(row), robot);
+  RowMotion motion = drive.gyro.empty() ? shown_motion(drive, row, robot)
+                                        : row_motion(drive.gyro[row], drive.duration(row), robot);
   motion.set_wheels(drive, row);
+  motion.body = as_shown(drive, motion.body);
+  if (drive.factors) motion.shown = &drive.factors->shown;
   return motion;
 }
 

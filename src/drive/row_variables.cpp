@@ -3,7 +3,7 @@
 #include "drive/row_variables.hpp"
 
 #include "drive/body_motion.hpp"
-#include "drive/unsteered.hpp"
+#include "drive/as_read.hpp"
 
 #include <algorithm>
 #include <array>
@@ -178,8 +178,8 @@ RowVariables drive_variables(const MotionRows& drive, const Robot& robot, int se
 
 RowVariables row_variables(const MotionRows& drive, const Robot& robot, const Pose& start,
                            const std::vector<Pose>& path, int session) {
-  if (!drive.steered.empty()) {
-    return row_variables(unsteered(drive), robot, start, path, session);
+  if (!is_as_read(drive)) {
+    return row_variables(as_read(drive, robot), robot, start, path, session);
   }
   const std::size_t rows = drive.rows();
   if (path.size() != rows) throw std::invalid_argument("a path has a pose per row of its drive");
@@ -200,8 +200,8 @@ RowVariables instant_variables(const MotionRows& drive, const Robot& robot,
                                const std::vector<double>& instants, const std::vector<Pose>& poses,
                                int session) {
   if (poses.size() != instants.size()) throw std::invalid_argument("an instant has one pose");
-  if (!drive.steered.empty()) {
-    return instant_variables(unsteered(drive), robot, instants, poses, session);
+  if (!is_as_read(drive)) {
+    return instant_variables(as_read(drive, robot), robot, instants, poses, session);
   }
   const RowVariables by_row = drive_variables(drive, robot, session);
   const std::vector<MotionKind> kinds = motion_kinds(drive, robot);

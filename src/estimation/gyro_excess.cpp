@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/gyro_excess.hpp"
 
-#include "drive/row_motion.hpp"
-#include "effects/channel_physics.hpp"
-#include "effects/channel_record.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 
 #include <cmath>
@@ -15,24 +12,12 @@ namespace {
 constexpr double kLeastSd = 1e-7;   // rad: who states no noise at all
 constexpr double kLeastNew = 1e-3;  // of a basis vector that lies in the others
 
-/// Constant errors that take a factor below zero: of wheels that count backwards.
-std::vector<Effect> wrong_signs(const Model& model) {
-  std::vector<Effect> result;
-  for (const Effect& one : model.effects) {
-    const bool wheels = !effects::record_of(one.channel).below_zero.empty();
-    const bool fitted = one.is_constant() && !one.per_session && one.coefficients.size() == 1;
-    if (wheels && fitted && one.coefficients.front() < -1.0) result.push_back(one);
-  }
-  return result;
-}
-
 }  // namespace
 
 GyroExcess gyro_excess(const MotionRows& drive, const std::vector<SegmentRow>& rows,
-                       const Model& model) {
+                       const Robot& robot, const Noise& noise) {
   GyroExcess result;
   if (drive.gyro.empty() || rows.empty()) return result;
-  const std::vector<Effect> wrong = wrong_signs(model);
   const auto count = static_cast<Eigen::Index>(rows.size());
   Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(count, 4);
   Eigen::VectorXd excess = Eigen::VectorXd::Zero(count);
@@ -40,19 +25,14 @@ GyroExcess gyro_excess(const MotionRows& drive, const std::vector<SegmentRow>& r
   for (Eigen::Index k = 0; k < count; ++k) {
     const SegmentRow& row = rows[static_cast<std::size_t>(k)];
     const double variance =
-        odometry::excess_variance(drive, row.row, row.part, row.duration, model.robot, model.noise);
+        odometry::excess_variance(drive, row.row, row.part, row.duration, robot, noise);
     if (!std::isfinite(variance)) continue;
     over_sd[k] = 1.0 / std::sqrt(variance + kLeastSd * kLeastSd);
     excess[k] = row.part * drive.gyro[row.row].excess;
     if (drive.rests(row.row)) {
       basis(k, 0) = row.duration;
     } else {
-      effects::DrivePattern more;
-      for (const Effect& one : wrong) {
-        more.add(row.part, effects::drive_pattern(one.channel, one.coefficients.front(),
-                                                  drive::row_motion(drive, row.row, model.robot)));
-      }
-      basis.row(k) << 0.0, row.duration, row.path + more.advance, row.turn + more.turn;
+      basis.row(k) << 0.0, row.duration, row.path, row.turn;
     }
   }
   basis = over_sd.asDiagonal() * basis;

@@ -14,13 +14,10 @@
 //
 // so nothing is lost of a constant bias (at rest and on the way), a scale of the gyro or of the
 // wheels' turn, or wheels of different size. Path and turn are those of wheels and gyro together,
-// whose noise does not correlate with the excess; of a wheel that the model says counts backwards,
-// as it turns: what the row says, a difference of wheels, has the excess's own noise on the way
-// straight ahead.
+// whose noise does not correlate with the excess.
 #pragma once
 
 #include "estimation/segment_motion.hpp"
-#include "trussmap/model.hpp"
 
 #include <vector>
 
@@ -34,7 +31,7 @@ struct GyroExcess {
 
 /// Without readings, 0 numbers and no weights.
 [[nodiscard]] GyroExcess gyro_excess(const MotionRows& drive, const std::vector<SegmentRow>& rows,
-                                     const Model& model);
+                                     const Robot& robot, const Noise& noise);
 
 /// What one unit of each pattern adds to the numbers, 4 x patterns; `patterns` as in
 /// segment_motion.

@@ -72,7 +72,7 @@ RecordingProblem with_segments(RecordingProblem problem, SessionSegments segment
   for (std::size_t k = 0; k < segments.measured.size(); ++k) {
     Measurement& one = segments.measured[k];
     one.source = problem.segments.size();
-    GyroExcess excess = gyro_excess(drive, segments.rows[k], model);
+    GyroExcess excess = gyro_excess(drive, segments.rows[k], model.robot, model.noise);
     problem.segments.push_back(std::move(segments.rows[k]));
     problem.measurements.push_back(one);
     if (excess.rows > 0) {

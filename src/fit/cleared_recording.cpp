@@ -31,6 +31,7 @@ void clear_drive(const DrivenRecording& recorded, const std::vector<effects::Dri
   clear.forward = drive.forward;
   clear.turn = drive.turn;
   clear.pair = drive.pair;
+  clear.factors.reset();
   result.slip.assign(drive.rows(), 0.0);
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const effects::DrivePattern more = effects.empty() ? effects::DrivePattern() : effects[row];

@@ -60,6 +60,7 @@ void add_noise(const Vector2& missing, double excess, drive::RowMotion& row) {
     row.gyro_turn += lacks[1] - (1.0 - row.gyro_share) * excess;
     lacks += excess * Vector2(row.gyro_along, row.gyro_share);
   }
+  if (row.shown != nullptr) lacks = (*row.shown * lacks).eval();
   row.body = row.body + BodyMotion{lacks[0], 0.0, lacks[1]};
 }
 

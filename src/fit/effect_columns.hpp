@@ -12,7 +12,8 @@
 //
 // All act on the motion as recorded, so the order of effects does not matter. Delays and steering
 // are exact only near their references, by which recordings are to be laid out: the times of
-// sightings and truth, or of fixes, moved back (retimed), and the wheels steered (steered).
+// sightings and truth, or of fixes, moved back (retimed), and the wheels steered (steered). Far
+// factors of wheels are laid out for their noise (effects/wheel_factors.hpp).
 #pragma once
 
 #include "drive/row_motion.hpp"

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "effects/steering.hpp"
+#include "effects/wheel_factors.hpp"
 #include "estimation/recording_start.hpp"
 #include "fit/along_paths.hpp"
 #include "fit/fit_stages.hpp"
@@ -9,7 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <utility>
 
 namespace trussmap::fitting {
 namespace {
@@ -36,12 +39,54 @@ std::vector<Effect> without_steering(std::vector<Effect> effects) {
   return effects;
 }
 
-/// What was recorded, driven as the steering effects say.
-std::vector<DrivenRecording> as_steered(const FitTask& task, const FitState& fit) {
+/// Those of each recording by the model's own effects, where any is far from the robot's; once they
+/// are taken in, until all are near it.
+std::vector<std::optional<WheelFactors>> far_factors(const FitState& fit, std::size_t sessions,
+                                                     bool taken_in) {
+  const std::vector<Effect> own(
+      fit.model.effects.begin(),
+      fit.model.effects.end() - static_cast<std::ptrdiff_t>(fit.common_errors));
+  const double far = taken_in ? 0.05 : 0.1;  // nearer to one, no noise is stated as exactly
+  std::vector<std::optional<WheelFactors>> result;
+  bool any = false;
+  for (std::size_t s = 0; s < sessions; ++s) {
+    result.push_back(effects::wheel_factors(own, fit.model.robot, static_cast<int>(s)));
+    if (!result.back()) return {};
+    any = any || effects::difference(*result.back(), fit.model.robot) > far;
+  }
+  if (!any) result.clear();
+  return result;
+}
+
+bool has_factors(const std::vector<DrivenRecording>& recordings) {
+  return !recordings.empty() && recordings.front().drive.factors.has_value();
+}
+
+/// What was recorded, driven as steering effects and far factors of wheels say.
+std::vector<DrivenRecording> as_driven(const FitTask& task, const FitState& fit) {
   const Model& model = fit.model;
-  if (!effects::steers(model.effects)) return task.recorded;
-  return odometry::with_gyro(steered(task.raw, model.effects, model.robot, fit.paths), model.robot,
-                             model.noise);
+  const std::vector<std::optional<WheelFactors>> factors =
+      far_factors(fit, task.raw.size(), has_factors(fit.recordings));
+  if (factors.empty() && !effects::steers(model.effects)) return task.recorded;
+  std::vector<DrivenRecording> result = steered(task.raw, model.effects, model.robot, fit.paths);
+  for (std::size_t s = 0; s < factors.size(); ++s) {
+    result[s].drive = effects::with_factors(std::move(result[s].drive), *factors[s], model.robot);
+  }
+  return odometry::with_gyro(result, model.robot, model.noise);
+}
+
+/// By more than noise is stated to, since they were taken in.
+bool factors_moved(const FitState& fit) {
+  constexpr double kMoved = 0.02;
+  const bool taken_in = has_factors(fit.recordings);
+  const std::vector<std::optional<WheelFactors>> now =
+      far_factors(fit, fit.recordings.size(), taken_in);
+  if (now.empty() || !taken_in) return now.empty() == taken_in;
+  for (std::size_t s = 0; s < now.size(); ++s) {
+    const WheelFactors& before = *fit.recordings[s].drive.factors;
+    if (effects::difference(*now[s], before, fit.model.robot) > kMoved) return true;
+  }
+  return false;
 }
 
 /// Spans are left out where delays move them.
@@ -109,7 +154,7 @@ void lay_out_recordings(const FitTask& task, Fitting& now) {
   FitState& fit = now.fit;
   if (task.options.fit_effects) shorten_steering(task, without_steering(fit.model.effects), fit);
   now.laid_out = fit.model.effects;
-  fit.recordings = retimed(as_steered(task, fit), fit.model.effects, fit.model.robot);
+  fit.recordings = retimed(as_driven(task, fit), fit.model.effects, fit.model.robot);
   fit.used = moved_options(task, fit.model);
   fit.problem = estimation::make_problem(fit.recordings, fit.model, fit.used);
 }
@@ -118,6 +163,7 @@ bool layout_moved(const Fitting& now) {
   constexpr double kMovedLayout = 0.02;  // standard deviations
   const FitState& fit = now.fit;
   if (steering_sees_path(fit.model.effects)) return true;
+  if (factors_moved(fit)) return true;
   const std::vector<int> unknown = estimation::unknown_coefficients(fit.columns.border);
   for (std::size_t k = 0; k < unknown.size(); ++k) {
     const Coefficient& one = fit.columns.coefficients[idx(unknown[k])];

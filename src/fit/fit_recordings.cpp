@@ -4,6 +4,7 @@
 // A factor of the drive that is sought from nothing, and is large: about the map without it least
 // squares may lose their way. That shows (a fit with one coefficient more is no worse than one
 // without it), and the same is tried from factors of some size.
+#include "effects/wheel_factors.hpp"
 #include "fit/fit_stages.hpp"
 #include "trussmap/error.hpp"
 
@@ -17,9 +18,7 @@ namespace {
 constexpr double kStartSizes[] = {-0.25, 0.25, -0.6, 1.0};
 
 bool is_factor(Channel channel) {
-  using enum Channel;
-  return channel == travel || channel == turn || channel == difference || channel == wheels ||
-         channel == left || channel == right || channel == steer_gain;
+  return effects::is_wheel_factor(channel) || channel == Channel::steer_gain;
 }
 
 bool is_from_nothing(const Effect& effect) {

@@ -60,11 +60,9 @@ std::vector<Vector2> estimated_noise(const std::vector<estimation::SegmentRow>& 
     A.col(0) = influences[k].block<3, 1>(0, 0);
     A.col(1) = influences[k].block<3, 1>(0, 2);
     const WheelTravel own = rows[k].part * drive::own_travel(drive, rows[k].row, robot);
-    const ArcNoise wheels =
-        wheel_arc_noise({std::abs(own.left) + kLeastShare, std::abs(own.right) + kLeastShare},
-                        robot.wheelbase, {1.0, 1.0});
-    Matrix2 Q;
-    Q << wheels.along, wheels.shared, wheels.shared, wheels.heading;
+    const Vector2 of_wheels(std::abs(own.left) + kLeastShare, std::abs(own.right) + kLeastShare);
+    const Matrix2 by = drive::by_travel(drive, robot);
+    Matrix2 Q = by * of_wheels.asDiagonal() * by.transpose();
     if (!drive.gyro.empty()) {
       const GyroShare& gyro = drive.gyro[rows[k].row];
       Q = (Q - Vector2(gyro.along, gyro.turn) * Q.row(1)).eval();

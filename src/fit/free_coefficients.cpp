@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "effects/wheel_factors.hpp"
 #include "estimation/common_errors.hpp"
 #include "estimation/recording_descent.hpp"
 #include "fit/fit_stages.hpp"
@@ -64,7 +65,9 @@ void take_columns(const FitTask& task, Fitting& now) {
   for (std::size_t k = 0; k < fit.columns.border.size(); ++k) {
     const Coefficient& one = fit.columns.coefficients[k];
     estimation::EffectPattern& column = fit.columns.border[k];
-    if (is_laid_out(effects[one.effect].channel)) {
+    const bool factor = fit.recordings.front().drive.factors.has_value() &&
+                        effects::is_wheel_factor(effects[one.effect]) && !now.is_common(one.effect);
+    if (factor || is_laid_out(effects[one.effect].channel)) {
       column.reference = now.laid_out[one.effect].coefficients[one.place];
     }
     if (now.is_common(one.effect)) {

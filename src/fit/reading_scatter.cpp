@@ -4,7 +4,7 @@
 
 #include "effects/channel_physics.hpp"
 #include "estimation/noise_states.hpp"
-#include "trussmap/dead_reckoning.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,12 +51,13 @@ ReadingScatter::ReadingScatter(const FitState& fit) {
       const estimation::SegmentRow moved = estimation::with_effects(row, effects[session]);
       turned += moved.turn;
       const Robot& robot = fit.model.robot;
-      const WheelTravel travel = row.part * drive::noisy_travel(drive, row.row, robot);
       Row next;
       next.motion = drive::row_motion(row.part * drive.motion(row.row), row.duration, robot);
       next.way = std::abs(row.path);
       next.turn = std::abs(row.turn);
-      next.wheels = arc_covariance(travel, row.duration, robot, wheels_alone)(2, 2);
+      next.wheels =
+          odometry::wheels_noise(drive, row.row, row.part, row.duration, robot, wheels_alone)
+              .heading;
       next.y = moved.reading - turned;  // of a row without one NaN
       if (!std::isnan(next.y)) {
         if (std::isnan(first)) first = next.y;

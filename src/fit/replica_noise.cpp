@@ -160,10 +160,10 @@ void disturb_drive(std::size_t session, Replica& replica, statistics::NormalDraw
     const double travel = draw(noise.travel_per_s * std::sqrt(duration));
     if (drive.wheels.empty()) {
       const auto [left, right] = drive::own_travel(drive, row, robot);
-      const WheelTravel more{draw(noise.left * std::sqrt(std::abs(left))) + travel,
-                             draw(noise.right * std::sqrt(std::abs(right))) + travel};
-      const BodyMotion turned{0.0, 0.0, heading};
-      drive::add_motion(drive, row, drive::body_motion(more, robot.wheelbase) + turned, robot);
+      const double of_left = draw(noise.left * std::sqrt(std::abs(left)));
+      const double of_right = draw(noise.right * std::sqrt(std::abs(right)));
+      const Vector2 more = drive::by_travel(drive, robot) * Vector2(of_left, of_right);
+      drive::add_motion(drive, row, {more[0] + travel, 0.0, more[1] + heading}, robot);
     } else {
       disturb_columns(row, replica.fit.model, drive, draw);
     }

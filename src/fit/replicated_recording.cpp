@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "fit/replicated_recording.hpp"
 
+#include "drive/as_read.hpp"
 #include "drive/body_motion.hpp"
-#include "drive/unsteered.hpp"
 #include "fit/noise_free.hpp"
 #include "fit/replica_stages.hpp"
 
@@ -138,8 +138,8 @@ void take_events(const std::vector<DrivenRecording>& recordings, std::size_t s, 
   }
 }
 
-/// Delays back in their places: a fit moves what was sighted to when it was seen. Steering as it
-/// was read: a fit takes its effects in before all else.
+/// Delays back in their places: a fit moves what was sighted to when it was seen. Steering, and
+/// wheels of far factors, as they were read: a fit takes these effects in before all else.
 std::vector<DrivenRecording> in_own_times(std::vector<DrivenRecording> recordings,
                                           Replica&& replica) {
   const Model& model = replica.fit.model;
@@ -151,7 +151,7 @@ std::vector<DrivenRecording> in_own_times(std::vector<DrivenRecording> recording
     take_events(recordings, s, model, Channel::fix_delay, timed.fixes, own.fixes);
     own.loops = std::move(timed.loops);
     std::vector<WheelColumn> wheels = std::move(own.drive.wheels);
-    own.drive = drive::unsteered(std::move(timed.drive));
+    own.drive = drive::as_read(std::move(timed.drive), model.robot);
     own.drive.wheels = std::move(wheels);
     own.survey = std::move(timed.survey);
   }

@@ -19,7 +19,7 @@ namespace {
 /// Nothing where two wheels' alone is meant.
 std::optional<ArcNoise> noise_of_row(const MotionRows& drive, const DriveRow& row,
                                      const Robot& robot, const Noise& noise) {
-  if (drive.gyro.empty() && drive.wheels.empty()) return std::nullopt;
+  if (drive.gyro.empty() && drive.wheels.empty() && !drive.factors) return std::nullopt;
   return row_noise(drive, row.row, row.part, row.duration, robot, noise);
 }
 

@@ -40,14 +40,28 @@ ArcNoise columns_noise(const MotionRows& drive, std::size_t row, double part, do
           Q(0, 1),          Q(1, 2)};
 }
 
-/// Of the wheels, without the gyro.
-ArcNoise wheels_noise(const MotionRows& drive, std::size_t row, double part, double duration,
-                      const Robot& robot, const Noise& noise) {
-  if (!drive.wheels.empty()) return columns_noise(drive, row, part, duration, noise);
-  return arc_noise(part * drive::noisy_travel(drive, row, robot), duration, robot, noise);
+/// Of two wheels by their factors.
+ArcNoise factors_noise(const Eigen::Matrix2d& by, const WheelTravel& travel, double duration,
+                       const Noise& noise) {
+  const Vector2 variance(noise.left * noise.left * std::abs(travel.left),
+                         noise.right * noise.right * std::abs(travel.right));
+  const Matrix2 Q = by * variance.asDiagonal() * by.transpose();
+  const double turn = std::abs(by.row(1).dot(Vector2(travel.left, travel.right)));
+  return {Q(0, 0) + noise.travel_per_s * noise.travel_per_s * duration,
+          Q(1, 1) + noise.heading_per_s * noise.heading_per_s * duration +
+              noise.heading_per_rad * noise.heading_per_rad * turn,
+          Q(0, 1)};
 }
 
 }  // namespace
+
+ArcNoise wheels_noise(const MotionRows& drive, std::size_t row, double part, double duration,
+                      const Robot& robot, const Noise& noise) {
+  if (!drive.wheels.empty()) return columns_noise(drive, row, part, duration, noise);
+  const WheelTravel travel = part * drive::noisy_travel(drive, row, robot);
+  return drive.factors ? factors_noise(drive.factors->by_travel, travel, duration, noise)
+                       : arc_noise(travel, duration, robot, noise);
+}
 
 GyroShare gyro_share(const BodyMotion& wheels, double yaw_rate, double duration, const Noise& noise,
                      const ArcNoise& of_wheels) {

@@ -46,6 +46,11 @@ namespace trussmap::odometry {
                                                      const Robot& robot, const Noise& noise);
 [[nodiscard]] bool has_gyro(const std::vector<DrivenRecording>& recordings);
 
+/// Where the noise of the wheels' motion in a row comes from, or in a part of it that lasts
+/// `duration` s: of two wheels by their factors, where the drive has some.
+[[nodiscard]] ArcNoise wheels_noise(const MotionRows& drive, std::size_t row, double part,
+                                    double duration, const Robot& robot, const Noise& noise);
+
 /// Where the noise of a row's motion, or of a part of it that lasts `duration` s, comes from: of
 /// the wheels, and of the gyro that was taken in.
 [[nodiscard]] ArcNoise row_noise(const MotionRows& drive, std::size_t row, double part,

@@ -90,8 +90,7 @@ TrainedModel trained_model(const fitting::FitState& training,
   result.effects = fitting::effect_columns(training.model.effects, context).border;
   result.offsets = fitting::offsets_of(training);
   for (std::size_t k = 0; k < result.effects.size(); ++k) {
-    result.offsets[static_cast<Eigen::Index>(k)] +=
-        training.columns.border[k].reference - result.effects[k].reference;
+    result.effects[k].reference = training.columns.border[k].reference;
   }
   KnownMap map = known_map(result.problem, training, options.survey, recordings);
   result.state.landmarks = std::move(map.places);

@@ -91,7 +91,7 @@ void expect_the_same(const DrivenRecording& recording, const Model& model,
                                           (there.covariance.norm() + 1e-12));
   }
   // Beside a gyro shapes see the way as it was read up to what steering does to the gyro's weights
-  // (drive/unsteered.hpp).
+  // (drive/as_read.hpp).
   const bool both = recording.drive.has_gyro() && steers(model.effects);
   EXPECT_LT(place, both ? 1e-6 : 1e-9) << what;
   EXPECT_LT(heading, both ? 1e-7 : 1e-11) << what;
