@@ -173,9 +173,9 @@ struct WheelFactors {
 /// A drive as motion of its robot's body, row by row: by the wheels as with_wheels makes it; then
 /// steering effects or far factors of wheels, and the gyro are taken in, once each.
 struct MotionRows : DriveColumns {
-  std::vector<double> forward;        ///< m
-  std::vector<double> turn;           ///< rad to the left
-  std::vector<double> sideways;       ///< m that the body moves to the left; empty = 0
+  std::vector<double> forward;   ///< m
+  std::vector<double> turn;      ///< rad to the left
+  std::vector<double> sideways;  ///< m that the body moves to the left; empty = 0
   /// Of two wheels: their own travels, by the robot's wheelbase; empty of other drives.
   WheelPair pair;
   std::vector<WheelColumn> wheels;    ///< the robot's own; empty of two wheels, and of a unicycle

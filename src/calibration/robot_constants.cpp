@@ -160,6 +160,20 @@ void add_noise(const Noise& before, const Noise& after, const Robot& robot,
   add("gyro noise", "rad/s^1/2", before.gyro, after.gyro, "angle random walk");
 }
 
+/// Noise per metre as the wheels count it once their sizes are pasted: of wheels that were far off
+/// another metre.
+Noise as_pasted(Noise noise, const std::vector<RobotConstant>& list) {
+  constexpr double kFar = 0.1;
+  for (const auto& [name, size] :
+       {std::pair("left wheel", &Noise::left), std::pair("right wheel", &Noise::right)}) {
+    const auto wheel = std::ranges::find(list, name, &RobotConstant::name);
+    if (wheel == list.end() || !wheel->determined || !(wheel->before > 0.0)) continue;
+    const double times = wheel->after / wheel->before;
+    if (std::abs(times - 1.0) >= kFar) noise.*size *= std::sqrt(times);
+  }
+  return noise;
+}
+
 /// Effects that are there and no constant undoes.
 std::vector<std::string> others_of(const std::vector<EffectEstimate>& effects, const Robot& robot) {
   std::vector<std::string> names;
@@ -359,7 +373,7 @@ RobotConstants robot_constants(const Model& before, const ModelFit& after) {
       after.state ? covariance_in(*after.state, fitted) : independent(after.effects, fitted);
   RobotConstants result = told(before, known);
   result.others = others_of(after.effects, robot);
-  add_noise(before.noise, after.model.noise, robot, result.list);
+  add_noise(before.noise, as_pasted(after.model.noise, result.list), robot, result.list);
   return result;
 }
 

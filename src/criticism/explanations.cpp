@@ -67,7 +67,8 @@ class Explainer {
           });
       if (within != listed_sets.end() && !is_named) {
         const auto at = static_cast<std::size_t>(within - listed_sets.begin());
-        result.sets[at].probability += one.weight / all;
+        double& sum = result.sets[at].probability;
+        sum = std::min(1.0, sum + one.weight / all);
         continue;
       }
       if (behind > kListedBehind && !is_named) continue;

@@ -109,6 +109,23 @@ TEST(RobotConstants, WhatNoConstantUndoesStaysInTheModel) {
   EXPECT_NEAR(after(found, "gyro scale"), 1.02, 1e-12);
 }
 
+/// 5 m of it count as one before, as five after: the same variance on the way.
+TEST(RobotConstants, NoiseIsPerMetreAsWheelsCountThen) {
+  const Model before;
+  const auto of_left_wheel = [&before](double g) {
+    ModelFit fit;
+    fit.model = before;
+    fit.effects = {known(Channel::left, g)};
+    return robot_constants(before, fit);
+  };
+  const RobotConstants far = of_left_wheel(4.0);
+  EXPECT_NEAR(after(far, "left wheel"), 5.0, 1e-12);
+  const double on_the_way = std::pow(5.0 * before.noise.left, 2) * 1.0;
+  EXPECT_NEAR(std::pow(after(far, "left wheel noise"), 2) * 5.0, on_the_way, 1e-12);
+  EXPECT_FALSE(has(far, "right wheel noise"));
+  EXPECT_FALSE(has(of_left_wheel(0.02), "left wheel noise"));
+}
+
 /// Ratio, wheelbase and scale of a left wheel that is 1 % larger, and of one more that is not.
 TEST(RobotConstants, OneWheelExplainsThree) {
   const auto of = [](double difference, double turn, double travel) {
