@@ -383,6 +383,7 @@ RobotConstants robot_constants(const Model& before, const std::vector<EffectEsti
   known.covariance = independent(after, fitted);
   RobotConstants result = told(before, known);
   result.others = others_of(after, before.robot);
+  add_noise(before.noise, as_pasted(before.noise, result.list), before.robot, result.list);
   return result;
 }
 

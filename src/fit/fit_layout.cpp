@@ -46,7 +46,8 @@ std::vector<std::optional<WheelFactors>> far_factors(const FitState& fit, std::s
   const std::vector<Effect> own(
       fit.model.effects.begin(),
       fit.model.effects.end() - static_cast<std::ptrdiff_t>(fit.common_errors));
-  const double far = taken_in ? 0.05 : 0.1;  // nearer to one, no noise is stated as exactly
+  // Nearer to one, no noise is stated as exactly; gross constants are compared on one side of it.
+  const double far = taken_in ? 0.02 : 0.03;
   std::vector<std::optional<WheelFactors>> result;
   bool any = false;
   for (std::size_t s = 0; s < sessions; ++s) {
@@ -75,9 +76,10 @@ std::vector<DrivenRecording> as_driven(const FitTask& task, const FitState& fit)
   return odometry::with_gyro(result, model.robot, model.noise);
 }
 
-/// By more than noise is stated to, since they were taken in.
+/// Since they were taken in, by more than may tell fits apart that have the same motion by other
+/// factors.
 bool factors_moved(const FitState& fit) {
-  constexpr double kMoved = 0.02;
+  constexpr double kMoved = 2e-4;
   const bool taken_in = has_factors(fit.recordings);
   const std::vector<std::optional<WheelFactors>> now =
       far_factors(fit, fit.recordings.size(), taken_in);
