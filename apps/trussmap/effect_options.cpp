@@ -78,7 +78,7 @@ void add_effect_options(const Command& command, EffectOptions& options) {
 
 std::vector<Effect> effects_of(const EffectOptions& options) {
   std::vector<Effect> effects;
-  if (!options.model.empty()) effects = read_model(options.model).effects;
+  if (!options.model.empty()) effects = read_effects(options.model);
   for (const std::string& option : options.named) effects.push_back(named_effect(option));
   for (Effect& effect : effects) {
     try {

@@ -28,6 +28,10 @@ namespace trussmap {
 [[nodiscard]] Model read_model(const std::filesystem::path& file,
                                const std::vector<Recording>& recordings);
 
+/// The effects of a model file alone, of whatever drive: for a robot that another place states.
+/// Throws as read_model does.
+[[nodiscard]] std::vector<Effect> read_effects(const std::filesystem::path& file);
+
 /// The model as TOML; numbers read back exactly.
 [[nodiscard]] std::string format_model(const Model& model);
 

@@ -20,6 +20,8 @@ namespace {
 
 using Eigen::Vector2d;
 
+constexpr double kUnseen = 1e-6;  // m: less no tape measures, and rounding may be
+
 struct Residual {
   Eigen::Vector4d left = Eigen::Vector4d::Zero();  // cw x, y, ccw x, y
   Eigen::Matrix<double, 4, 2> jacobian;
@@ -54,6 +56,7 @@ SquareClusters exchanged(const SquareClusters& clusters) {
 bool centres_contradict(const SquareConsistency& consistency, const SquareClusters& clusters) {
   constexpr double kSureContradiction = 1e-3;
   constexpr double kShare = 0.1;  // of the error, where there is no scatter to judge by
+  if (consistency.residual < kUnseen) return false;
   return std::isnan(consistency.p_value)
              ? consistency.residual > kShare * clusters.largest_offset.value
              : consistency.p_value < kSureContradiction;
@@ -202,7 +205,7 @@ std::vector<std::string> square_outliers(const SquareRuns& runs) {
       const SampleMean rest = sample_mean(others);
       const double scatter = std::sqrt(0.5 * rest.covariance.trace() * rest.count);
       const double distance = ((*sample)[k] - rest.mean).norm();
-      if (scatter <= 0.0 || distance <= kFar * scatter) continue;
+      if (scatter <= 0.0 || distance <= std::max(kFar * scatter, kUnseen)) continue;
       doubts.push_back(fmt::format(
           "run {} of direction {} ends {:.2g} m from the others, which scatter by {:.2g} m; is its "
           "label right, did a wheel slip, was it measured well?",

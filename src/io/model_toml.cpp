@@ -145,30 +145,49 @@ Model read_sections(const toml::table& root) {
 
 namespace trussmap::io {
 
-Model model_of(const toml::table& root, const std::string& file) {
-  try {
-    Model model = read_sections(root);
-    for (const Effect& effect : model.effects) {
-      try {
-        effects::require_of_drive(effect, model.robot);
-      } catch (const std::invalid_argument& error) {
-        throw TomlFault{static_cast<std::size_t>(effect.line), error.what()};
-      }
+namespace {
+
+void require_of_its_drive(const Model& model, const std::string& file) {
+  for (const Effect& effect : model.effects) {
+    try {
+      effects::require_of_drive(effect, model.robot);
+    } catch (const std::invalid_argument& error) {
+      throw InputError(file, effect.line, error.what());
     }
-    return model;
+  }
+}
+
+/// Its effects may be of any drive.
+Model sections_of(const toml::table& root, const std::string& file) {
+  try {
+    return read_sections(root);
   } catch (const TomlFault& fault) {
     throw InputError(file, fault.line, fault.what);
   }
 }
 
-Model model_from_text(const std::string& text, const std::string& file) {
+Model sections_from_text(const std::string& text, const std::string& file) {
   try {
-    return model_of(toml::parse(text), file);
+    return sections_of(toml::parse(text), file);
   } catch (const toml::parse_error& error) {
     throw InputError(file, error.source().begin.line, toml_fault(error));
   } catch (const TomlAssertion&) {
     throw InputError(file, 0, "no TOML: keys or values are malformed");
   }
+}
+
+}  // namespace
+
+Model model_of(const toml::table& root, const std::string& file) {
+  Model model = sections_of(root, file);
+  require_of_its_drive(model, file);
+  return model;
+}
+
+Model model_from_text(const std::string& text, const std::string& file) {
+  Model model = sections_from_text(text, file);
+  require_of_its_drive(model, file);
+  return model;
 }
 
 }  // namespace trussmap::io
@@ -177,6 +196,10 @@ namespace trussmap {
 
 Model read_model(const std::filesystem::path& file) {
   return model_from_text(read_file(file), file.string());
+}
+
+std::vector<Effect> read_effects(const std::filesystem::path& file) {
+  return sections_from_text(read_file(file), file.string()).effects;
 }
 
 std::string format_model(const Model& model) {

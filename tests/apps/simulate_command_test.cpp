@@ -52,6 +52,24 @@ TEST(SimulateCommand, AModelWithTheSameEffectsExplainsTheRecording) {
   EXPECT_GT(map_error(scratch, "r", "r/model.toml"), 0.02);
 }
 
+/// The robot is that of --drive, whatever a file of effects says or leaves out.
+TEST(SimulateCommand, EffectsOfAFileAreOfTheDriveThatIsSimulated) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  scratch.write("e.toml",
+                "[[effect]]\nname = \"bent\"\nchannel = \"steer\"\nshape = [\"1\"]\n"
+                "coefficients = [0.02]\n");
+  const std::string command = "simulate --mesh 3x3 --effects " + at + "e.toml --out " + at;
+  const Ran ran = run_trussmap(command + "r --drive tricycle");
+  EXPECT_EQ(ran.status, 0) << ran.output;
+  EXPECT_NE(ran.output.find("bent"), std::string::npos) << ran.output;
+  const Ran other = run_trussmap(command + "other");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.output.find("e.toml:3: effect \"bent\": channel \"steer\" is of another drive"),
+            std::string::npos)
+      << other.output;
+}
+
 TEST(SimulateCommand, ANamedEffectIsThatOfAModel) {
   const ScratchFolder scratch;
   const std::string at = scratch.path().string() + "/";

@@ -72,6 +72,15 @@ TEST(SquareDoubts, UnitsEqualRunsAndUnexplainedErrorsAreNamed) {
   EXPECT_FALSE(doubts(turned).empty());
 }
 
+/// Of a robot that a computer drove without noise.
+TEST(SquareDoubts, WhatRoundingLeavesIsNoContradictionAndNoOutlier) {
+  SquareRuns runs;
+  runs.cw = {{1e-15, 0.0}, {0.0, 2e-15}, {0.0, 0.0}, {0.0, 0.0}, {3e-14, 0.0}};
+  runs.ccw = {{0.0, 0.0}, {-1e-15, 0.0}, {0.0, 1e-15}, {0.0, 0.0}, {0.0, -2e-14}};
+  EXPECT_EQ(doubts(runs), "");
+  EXPECT_TRUE(square_outliers(runs).empty());
+}
+
 TEST(OneWayTuning, OneDirectionHidesWhatTheOtherShows) {
   // Borenstein & Feng, Fig. 4: the two errors cancel one way and add up the other.
   const GeometryErrors errors{1.00084, 0.98874};

@@ -171,6 +171,25 @@ TEST(SlowGrossConstants, AWheelThatCountsBackIsFoundBesideAGyro) {
 }
 
 /// No calibration leads anywhere without survey, truth and fixes: turns and returns do.
+/// Neither travel and wheelbase, nor on the verge of what is laid out for its noise.
+TEST(SlowGrossConstants, BothWheelsBesideAGyroAreOneConstant) {
+  for (const double g : {-0.5, -0.1}) {
+    SimulationSettings settings = small_world(g == -0.5 ? 1004 : 1005);
+    settings.uneven = true;
+    settings.gyro = true;
+    (g == -0.5 ? settings.range_sensor : settings.ranges_alone) = true;
+    settings.no_survey = g != -0.5;
+    const SimulatedRecording one = simulate(settings, {catalogue_effect("wheel scale", {g})});
+    const auto found =
+        gross_constants({testing::driven(one.drive.recording)}, given(one), LegOptions{});
+    ASSERT_TRUE(found) << g;
+    EXPECT_EQ(names_in(*found), std::vector<std::string>{"wheel scale"}) << g;
+    const EffectEstimate& size = found->fit.effects.back();
+    EXPECT_NEAR(size.effect.coefficients.at(0), g, 4.0 * size.sd.at(0)) << g;
+    EXPECT_GT(found->fit.p_value, 1e-4) << g;
+  }
+}
+
 TEST(SlowGrossConstants, AWheelFiveTimesAsLargeIsFoundByRangesAlone) {
   SimulationSettings settings = small_world(1025);
   settings.uneven = true;
