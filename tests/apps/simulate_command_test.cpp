@@ -65,7 +65,7 @@ TEST(SimulateCommand, EffectsOfAFileAreOfTheDriveThatIsSimulated) {
   EXPECT_NE(ran.output.find("bent"), std::string::npos) << ran.output;
   const Ran other = run_trussmap(command + "other");
   EXPECT_EQ(other.status, 2);
-  EXPECT_NE(other.output.find("e.toml:3: effect \"bent\": channel \"steer\" is of another drive"),
+  EXPECT_NE(other.output.find("e.toml:4: effect \"bent\": channel \"steer\" is of another drive"),
             std::string::npos)
       << other.output;
 }
