@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "drive/row_variables.hpp"
 
-#include "drive/body_motion.hpp"
 #include "drive/as_read.hpp"
+#include "drive/body_motion.hpp"
 
 #include <algorithm>
 #include <array>
