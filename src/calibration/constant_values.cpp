@@ -87,9 +87,12 @@ void add_lengths(const Robot& robot, const DriveScales& scales,
     case DriveKind::mecanum:
       add("wheelbase", robot.wheelbase, "with the length: their sum alone shows");
       return add("length", robot.length, "with the wheelbase");
-    case DriveKind::wheels:
-      result.push_back({"turn", "times", 1.0 / scales.length, ConstantKind::length, turns,
-                        "the matrix's third row, after the wheels'"});
+    case DriveKind::wheels: {
+      // A column of a robot's own may have the name.
+      const bool taken = std::ranges::count(robot.columns, "turn") > 0;
+      result.push_back({taken ? "turning" : "turn", "times", 1.0 / scales.length,
+                        ConstantKind::length, turns, "the matrix's third row, after the wheels'"});
+    }
   }
 }
 

@@ -126,6 +126,19 @@ TEST(RobotConstants, NoiseIsPerMetreAsWheelsCountThen) {
   EXPECT_FALSE(has(of_left_wheel(0.02), "left wheel noise"));
 }
 
+/// Else a column's line would stand above "not determined" of the same name.
+TEST(RobotConstants, AColumnOfTheNameOfAConstantHasALineOfItsOwn) {
+  Model model;
+  model.robot.drive = DriveKind::wheels;
+  model.robot.columns = {"travel", "turn"};
+  model.robot.matrix = Eigen::MatrixXd::Zero(3, 2);
+  model.robot.matrix(0, 0) = model.robot.matrix(2, 1) = 1.0;
+  const RobotConstants found =
+      robot_constants(model, {known(Channel::wheel2, -0.3), known(Channel::turn, 0.25)});
+  EXPECT_EQ(std::ranges::count(found.list, "turn", &RobotConstant::name), 1);
+  EXPECT_TRUE(has(found, "turning"));
+}
+
 /// Ratio, wheelbase and scale of a left wheel that is 1 % larger, and of one more that is not.
 TEST(RobotConstants, OneWheelExplainsThree) {
   const auto of = [](double difference, double turn, double travel) {
