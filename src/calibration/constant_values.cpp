@@ -4,6 +4,7 @@
 
 #include "effects/channel_physics.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <tuple>
 
