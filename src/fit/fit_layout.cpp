@@ -41,19 +41,20 @@ std::vector<Effect> without_steering(std::vector<Effect> effects) {
 
 /// Those of each recording by the model's own effects, where any is far from the robot's; once they
 /// are taken in, until all are near it.
-std::vector<std::optional<WheelFactors>> far_factors(const FitState& fit, std::size_t sessions,
-                                                     bool taken_in) {
+std::vector<WheelFactors> far_factors(const FitState& fit, std::size_t sessions, bool taken_in) {
   const std::vector<Effect> own(
       fit.model.effects.begin(),
       fit.model.effects.end() - static_cast<std::ptrdiff_t>(fit.common_errors));
   // Nearer to one, no noise is stated as exactly; gross constants are compared on one side of it.
   const double far = taken_in ? 0.02 : 0.03;
-  std::vector<std::optional<WheelFactors>> result;
+  std::vector<WheelFactors> result;
   bool any = false;
   for (std::size_t s = 0; s < sessions; ++s) {
-    result.push_back(effects::wheel_factors(own, fit.model.robot, static_cast<int>(s)));
-    if (!result.back()) return {};
-    any = any || effects::difference(*result.back(), fit.model.robot) > far;
+    const std::optional<WheelFactors> of_session =
+        effects::wheel_factors(own, fit.model.robot, static_cast<int>(s));
+    if (!of_session) return {};
+    result.push_back(*of_session);
+    any = any || effects::difference(*of_session, fit.model.robot) > far;
   }
   if (!any) result.clear();
   return result;
@@ -66,12 +67,12 @@ bool has_factors(const std::vector<DrivenRecording>& recordings) {
 /// What was recorded, driven as steering effects and far factors of wheels say.
 std::vector<DrivenRecording> as_driven(const FitTask& task, const FitState& fit) {
   const Model& model = fit.model;
-  const std::vector<std::optional<WheelFactors>> factors =
+  const std::vector<WheelFactors> factors =
       far_factors(fit, task.raw.size(), has_factors(fit.recordings));
   if (factors.empty() && !effects::steers(model.effects)) return task.recorded;
   std::vector<DrivenRecording> result = steered(task.raw, model.effects, model.robot, fit.paths);
   for (std::size_t s = 0; s < factors.size(); ++s) {
-    result[s].drive = effects::with_factors(std::move(result[s].drive), *factors[s], model.robot);
+    result[s].drive = effects::with_factors(std::move(result[s].drive), factors[s], model.robot);
   }
   return odometry::with_gyro(result, model.robot, model.noise);
 }
@@ -81,12 +82,11 @@ std::vector<DrivenRecording> as_driven(const FitTask& task, const FitState& fit)
 bool factors_moved(const FitState& fit) {
   constexpr double kMoved = 2e-4;
   const bool taken_in = has_factors(fit.recordings);
-  const std::vector<std::optional<WheelFactors>> now =
-      far_factors(fit, fit.recordings.size(), taken_in);
+  const std::vector<WheelFactors> now = far_factors(fit, fit.recordings.size(), taken_in);
   if (now.empty() || !taken_in) return now.empty() == taken_in;
   for (std::size_t s = 0; s < now.size(); ++s) {
     const WheelFactors& before = *fit.recordings[s].drive.factors;
-    if (effects::difference(*now[s], before, fit.model.robot) > kMoved) return true;
+    if (effects::difference(now[s], before, fit.model.robot) > kMoved) return true;
   }
   return false;
 }

@@ -28,10 +28,10 @@ std::optional<ArcNoise> noise_of_row(const MotionRows& drive, const DriveRow& ro
 ArcNoise arc_noise(const WheelTravel& travel, double duration, const Robot& robot,
                    const Noise& noise) {
   ArcNoise sources = wheel_arc_noise(travel, robot.wheelbase, WheelNoise{noise.left, noise.right});
-  const double turn = drive::body_motion(travel, robot.wheelbase).turn;
-  sources.along += noise.travel_per_s * noise.travel_per_s * duration;
-  sources.heading += noise.heading_per_s * noise.heading_per_s * duration +
-                     noise.heading_per_rad * noise.heading_per_rad * std::abs(turn);
+  const ArcNoise laws =
+      laws_noise(drive::body_motion(travel, robot.wheelbase).turn, duration, noise);
+  sources.along += laws.along;
+  sources.heading += laws.heading;
   return sources;
 }
 

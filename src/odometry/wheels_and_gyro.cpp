@@ -31,13 +31,13 @@ ArcNoise columns_noise(const MotionRows& drive, std::size_t row, double part, do
                                            : 0.0;
     Q += part * variance * by * by.transpose();
   }
-  const double travel = noise.travel_per_s * noise.travel_per_s * duration;
-  const double turn = std::abs(part * drive.turn[row]);
-  const double heading = noise.heading_per_s * noise.heading_per_s * duration +
-                         noise.heading_per_rad * noise.heading_per_rad * turn;
-  return {Q(0, 0) + travel, Q(2, 2) + heading,
-          Q(0, 2),          Q(1, 1) + (drive.sideways.empty() ? 0.0 : travel),
-          Q(0, 1),          Q(1, 2)};
+  const ArcNoise laws = laws_noise(part * drive.turn[row], duration, noise);
+  return {Q(0, 0) + laws.along,
+          Q(2, 2) + laws.heading,
+          Q(0, 2),
+          Q(1, 1) + (drive.sideways.empty() ? 0.0 : laws.along),
+          Q(0, 1),
+          Q(1, 2)};
 }
 
 /// Of two wheels by their factors.
@@ -46,14 +46,19 @@ ArcNoise factors_noise(const Eigen::Matrix2d& by, const WheelTravel& travel, dou
   const Vector2 variance(noise.left * noise.left * std::abs(travel.left),
                          noise.right * noise.right * std::abs(travel.right));
   const Matrix2 Q = by * variance.asDiagonal() * by.transpose();
-  const double turn = std::abs(by.row(1).dot(Vector2(travel.left, travel.right)));
-  return {Q(0, 0) + noise.travel_per_s * noise.travel_per_s * duration,
-          Q(1, 1) + noise.heading_per_s * noise.heading_per_s * duration +
-              noise.heading_per_rad * noise.heading_per_rad * turn,
-          Q(0, 1)};
+  const double turn = by.row(1).dot(Vector2(travel.left, travel.right));
+  const ArcNoise laws = laws_noise(turn, duration, noise);
+  return {Q(0, 0) + laws.along, Q(1, 1) + laws.heading, Q(0, 1)};
 }
 
 }  // namespace
+
+ArcNoise laws_noise(double turn, double duration, const Noise& noise) {
+  return {noise.travel_per_s * noise.travel_per_s * duration,
+          noise.heading_per_s * noise.heading_per_s * duration +
+              noise.heading_per_rad * noise.heading_per_rad * std::abs(turn),
+          0.0};
+}
 
 ArcNoise wheels_noise(const MotionRows& drive, std::size_t row, double part, double duration,
                       const Robot& robot, const Noise& noise) {

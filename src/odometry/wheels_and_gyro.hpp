@@ -46,6 +46,9 @@ namespace trussmap::odometry {
                                                      const Robot& robot, const Noise& noise);
 [[nodiscard]] bool has_gyro(const std::vector<DrivenRecording>& recordings);
 
+/// What the model knows of a motion's noise beside its wheels': per second, and per radian.
+[[nodiscard]] ArcNoise laws_noise(double turn, double duration, const Noise& noise);
+
 /// Where the noise of the wheels' motion in a row comes from, or in a part of it that lasts
 /// `duration` s: of two wheels by their factors, where the drive has some.
 [[nodiscard]] ArcNoise wheels_noise(const MotionRows& drive, std::size_t row, double part,
