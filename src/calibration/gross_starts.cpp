@@ -20,6 +20,7 @@ namespace trussmap::calibration {
 namespace {
 
 constexpr std::size_t kMostStarts = 4;
+constexpr std::size_t kFewestChords = 6;
 
 /// Where something tells of the robot's place.
 struct Mark {
@@ -121,6 +122,7 @@ void find_chords(Course& course) {
   }
   for (std::size_t a = 0; a < known.size(); ++a) {
     for (std::size_t b = a + 1; b < known.size() && b <= a + kFurthest; ++b) {
+      if (course.marks[known[a]].step == course.marks[known[b]].step) continue;  // seen, not driven
       const double length = (*course.marks[known[a]].known - *course.marks[known[b]].known).norm();
       if (length > kDefaultMinDrive) course.chords.push_back({known[a], known[b], length});
     }
@@ -199,14 +201,9 @@ std::vector<Pose> poses_with(const GrossStart& tried, const std::vector<BodyMoti
   return poses;
 }
 
-Vector2 seen_from(const Pose& pose, const Mark& mark) {
-  return pose.position() + rotation(pose.heading) * mark.offset;
-}
-
 class Disagreement {
  public:
   Disagreement(const std::vector<DrivenRecording>& recordings, const Robot& robot) : robot_(robot) {
-    constexpr std::size_t kFewestChords = 6;
     constexpr std::size_t kFewestReturns = 3;
     std::size_t chords = 0;
     std::size_t returns = 0;
@@ -224,90 +221,112 @@ class Disagreement {
 
   /// From 0 to about 1.
   [[nodiscard]] double of(const GrossStart& tried) const {
-    return by_chords_ ? of_chords(tried) : of_returns(tried);
+    return by_chords_ ? of_chords(chords_with(tried)) : of_returns(returns_with(tried));
   }
 
-  /// With the factor of the way that goes with it, where returns tell it.
+  /// With the factor of the way that goes with it, where chords or returns tell it.
   [[nodiscard]] GrossStart completed(GrossStart tried) const {
-    if (by_chords_) return tried;
-    if (const std::optional<double> factor = way_factor(missed_with(tried))) {
-      tried.travel = *factor - 1.0;
-    }
+    if (!tells_) return tried;
+    const std::optional<double> factor =
+        by_chords_ ? factor_of_chords(chords_with(tried)) : factor_of_returns(returns_with(tried));
+    if (factor) tried.travel = *factor - 1.0;
     return tried;
   }
 
  private:
-  [[nodiscard]] double of_chords(const GrossStart& tried) const {
-    std::vector<double> ratios;
-    for (const Course& course : courses_) {
-      const std::vector<Pose> poses = poses_with(tried, course.steps, robot_);
-      for (const Chord& one : course.chords) {
-        const Mark& from = course.marks[one.from];
-        const Mark& to = course.marks[one.to];
-        const Vector2 a = seen_from(poses[from.step], from);
-        ratios.push_back((seen_from(poses[to.step], to) - a).norm() / one.length);
-      }
-    }
-    const double usual = statistics::median(ratios);
-    if (!(usual > 0.0)) return 1.0;
-    double sum = 0.0;
-    for (const double one : ratios) sum += std::min(1.0, std::abs(one / usual - 1.0));
-    return sum / static_cast<double>(ratios.size());
-  }
-
-  /// A return: what lies between the two places of its landmark.
-  struct Missed {
+  /// What lies between two places.
+  struct Way {
     Vector2 driven = Vector2::Zero();  ///< m, as the wheels have it
     Vector2 seen = Vector2::Zero();    ///< m, as the sightings have it
-    double away = 0.0;                 ///< m that the robot was away, as the wheels have it
+    double length = 0.0;  ///< m: of a chord, as known; of a return how far away the robot was
   };
 
-  [[nodiscard]] std::vector<Missed> missed_with(const GrossStart& tried) const {
-    std::vector<Missed> missed;
+  [[nodiscard]] static Way way_of(const Chord& one, const Course& course,
+                                  const std::vector<Pose>& poses) {
+    const Mark& from = course.marks[one.from];
+    const Mark& to = course.marks[one.to];
+    return {poses[to.step].position() - poses[from.step].position(),
+            rotation(poses[to.step].heading) * to.offset -
+                rotation(poses[from.step].heading) * from.offset,
+            one.length};
+  }
+
+  [[nodiscard]] std::vector<Way> chords_with(const GrossStart& tried) const {
+    std::vector<Way> chords;
+    for (const Course& course : courses_) {
+      const std::vector<Pose> poses = poses_with(tried, course.steps, robot_);
+      for (const Chord& one : course.chords) chords.push_back(way_of(one, course, poses));
+    }
+    return chords;
+  }
+
+  /// Of the way: the median of those that give each chord its length.
+  [[nodiscard]] static std::optional<double> factor_of_chords(const std::vector<Way>& chords) {
+    std::vector<double> factors;
+    for (const Way& one : chords) {
+      const double square = one.driven.squaredNorm();
+      const double missing = one.length * one.length - one.seen.squaredNorm();
+      if (!(square > 0.0 && missing > 0.0)) continue;  // else there are two, or none
+      const double along = one.driven.dot(one.seen);
+      factors.push_back((std::sqrt(along * along + square * missing) - along) / square);
+    }
+    if (factors.size() < kFewestChords) return std::nullopt;
+    return statistics::median(factors);
+  }
+
+  [[nodiscard]] static double of_chords(const std::vector<Way>& chords) {
+    const std::optional<double> factor = factor_of_chords(chords);
+    if (!factor) return 1.0;
+    double sum = 0.0;
+    for (const Way& one : chords) {
+      const double length = (*factor * one.driven + one.seen).norm();
+      sum += std::min(1.0, std::abs(length / one.length - 1.0));
+    }
+    return sum / static_cast<double>(chords.size());
+  }
+
+  [[nodiscard]] std::vector<Way> returns_with(const GrossStart& tried) const {
+    std::vector<Way> returns;
     for (const Course& course : courses_) {
       const std::vector<Pose> poses = poses_with(tried, course.steps, robot_);
       for (const Chord& one : course.returns) {
-        const Mark& from = course.marks[one.from];
-        const Mark& to = course.marks[one.to];
-        Missed next;
-        for (std::size_t k = from.step; k <= to.step; ++k) {
-          next.away =
-              std::max(next.away, (poses[k].position() - poses[from.step].position()).norm());
+        Way next = way_of(one, course, poses);
+        const std::size_t from = course.marks[one.from].step;
+        next.length = 0.0;
+        for (std::size_t k = from; k <= course.marks[one.to].step; ++k) {
+          next.length =
+              std::max(next.length, (poses[k].position() - poses[from].position()).norm());
         }
-        next.driven = poses[to.step].position() - poses[from.step].position();
-        next.seen = rotation(poses[to.step].heading) * to.offset -
-                    rotation(poses[from.step].heading) * from.offset;
-        missed.push_back(next);
+        returns.push_back(next);
       }
     }
-    return missed;
+    return returns;
   }
 
   /// Of the way, by least squares of what is missed as a share of how far away the robot was.
   /// Nothing where landmarks are hardly seen from afar.
-  [[nodiscard]] static std::optional<double> way_factor(const std::vector<Missed>& missed) {
+  [[nodiscard]] static std::optional<double> factor_of_returns(const std::vector<Way>& returns) {
     constexpr double kLeastSeen = 0.05;  // of how far away, rms
     constexpr double kMost = 5.0;
     double both = 0.0;
     double seen = 0.0;
-    for (const Missed& one : missed) {
-      if (!(one.away > 0.0)) continue;
-      both -= one.driven.dot(one.seen) / (one.away * one.away);
-      seen += one.seen.squaredNorm() / (one.away * one.away);
+    for (const Way& one : returns) {
+      if (!(one.length > 0.0)) continue;
+      both -= one.driven.dot(one.seen) / (one.length * one.length);
+      seen += one.seen.squaredNorm() / (one.length * one.length);
     }
-    if (seen < kLeastSeen * kLeastSeen * static_cast<double>(missed.size())) return std::nullopt;
+    if (seen < kLeastSeen * kLeastSeen * static_cast<double>(returns.size())) return std::nullopt;
     return 1.0 / std::clamp(both / seen, 1.0 / kMost, kMost);
   }
 
-  [[nodiscard]] double of_returns(const GrossStart& tried) const {
-    const std::vector<Missed> missed = missed_with(tried);
-    const double factor = way_factor(missed).value_or(1.0);
+  [[nodiscard]] static double of_returns(const std::vector<Way>& returns) {
+    const double factor = factor_of_returns(returns).value_or(1.0);
     double sum = 0.0;
-    for (const Missed& one : missed) {
-      const double share = (one.driven + one.seen / factor).norm() / one.away;
-      sum += one.away > 0.0 ? std::min(1.0, share) : 1.0;
+    for (const Way& one : returns) {
+      const double share = (one.driven + one.seen / factor).norm() / one.length;
+      sum += one.length > 0.0 ? std::min(1.0, share) : 1.0;
     }
-    return sum / static_cast<double>(missed.size());
+    return sum / static_cast<double>(returns.size());
   }
 
   const Robot& robot_;
@@ -377,14 +396,11 @@ Rated descended(const Disagreement& disagreement, Rated at, Beside beside) {
 }
 
 /// The best of their neighbourhoods.
-std::vector<GrossStart> starts_by_places(const std::vector<DrivenRecording>& recordings,
-                                         const Robot& robot) {
+std::vector<GrossStart> starts_by_places(const Disagreement& disagreement, Beside beside) {
   constexpr double kNear = 0.15;  // of a logarithm
   constexpr double kMuchBetter = 0.6;
-  const Disagreement disagreement(recordings, robot);
   if (!disagreement.tells()) return {};
   std::vector<Rated> kept;
-  const Beside beside = beside_turning(recordings, robot);
   const double as_stated = disagreement.of({});
   for (const Rated& one : rated_grid(disagreement, beside)) {
     const bool near = std::any_of(kept.begin(), kept.end(), [&one](const Rated& other) {
@@ -416,11 +432,14 @@ std::vector<GrossStart> gross_starts(const std::vector<DrivenRecording>& all, co
     if (!options.truth) one.truth.clear();
     if (!options.fixes) one.fixes.clear();
   }
+  const Disagreement disagreement(recordings, robot);
   std::vector<GrossStart> starts;
   if (const std::optional<GrossStart> by_turns = start_by_turns(recordings, robot)) {
-    starts.push_back(*by_turns);
+    starts.push_back(disagreement.completed(*by_turns));
   }
-  for (const GrossStart& one : starts_by_places(recordings, robot)) starts.push_back(one);
+  for (const GrossStart& one : starts_by_places(disagreement, beside_turning(recordings, robot))) {
+    starts.push_back(one);
+  }
   return starts;
 }
 

@@ -31,7 +31,7 @@ struct GrossStart {
   double turn = 0.0;
   double difference = 0.0;                      ///< of two wheels; else 0
   double steer = 0.0;                           ///< rad; of a robot that steers, else 0
-  std::optional<double> travel = std::nullopt;  ///< where returns tell it
+  std::optional<double> travel = std::nullopt;  ///< where chords or returns tell it
 };
 
 /// The most promising first, a handful at most; none where the stated constants are as good. The

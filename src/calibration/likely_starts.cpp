@@ -4,7 +4,6 @@
 #include "calibration/sensor_places.hpp"
 #include "calibration/sought_constants.hpp"
 #include "calibration/wheel_calibration.hpp"
-#include "drive/steered_motion.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -41,10 +40,13 @@ std::vector<std::vector<double>> likely_starts(const std::vector<DrivenRecording
       starts.push_back(at_start(stated, one, model.robot));
     }
   };
-  // Places by turns that are wrong by a factor may be far off, those that are stated as well.
-  if (drive::has_steering(robot)) add();
-  robot.mounted = started_places(recordings, robot);
   add();
+  // Places by turns that are wrong by a factor may be far off, those that are stated as well.
+  const Mountings places = started_places(recordings, robot);
+  if (places != robot.mounted) {
+    robot.mounted = places;
+    add();
+  }
   starts.push_back(stated);
   return starts;
 }

@@ -341,10 +341,7 @@ CalibrationByParts calibrated_by_parts(std::vector<double> g,
   WheelCalibration result;
   result.model = with_constants(model, g);
   Mountings& mounted = result.model.robot.mounted;
-  mounted = started_places(drive::has_steering(model.robot)
-                               ? odometry::without_effects(recordings, result.model)
-                               : recordings,
-                           model.robot);
+  mounted = started_places(odometry::without_effects(recordings, result.model), model.robot);
   References references{told_in(recordings, result.model, options), {}};
   if (!references.used.scanner) mounted.scanner = model.robot.mounted.scanner;
   if (!references.used.sensor) mounted.sensor = model.robot.mounted.sensor;

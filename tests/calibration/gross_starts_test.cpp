@@ -28,6 +28,7 @@ struct Equipment {
   bool compass = false;
   bool gyro = false;
   bool survey = true;
+  bool range_sensor = false;
 };
 
 SimulatedRecording driven(const Effect& constant, const Equipment& equipment) {
@@ -38,8 +39,19 @@ SimulatedRecording driven(const Effect& constant, const Equipment& equipment) {
   settings.no_compass = !equipment.compass;
   settings.gyro = equipment.gyro;
   settings.no_survey = !equipment.survey;
+  settings.range_sensor = equipment.range_sensor;
   return simulate(settings, {constant});
 }
+/// One wheel that is larger.
+Effect of_the_left_wheel(double g) {
+  Effect left;
+  left.name = "left wheel";
+  left.channel = Channel::left;
+  left.shape = {Shape("1")};
+  left.coefficients = {g};
+  return left;
+}
+
 SimulatedRecording driven(const std::string& constant, double g, const Equipment& equipment) {
   return driven(catalogue_effect(constant, {g}), equipment);
 }
@@ -81,6 +93,23 @@ TEST(SlowGrossStarts, TellOneWheelOfAnotherSize) {
           << difference << equipment.compass << equipment.gyro;
     }
   }
+}
+
+/// A wheel three times as large, whose robot stands on none of the landmarks: turning is twice as
+/// much then, the way as well.
+TEST(SlowGrossStarts, TellTheWayByChordsThatAreSeenFromAfar) {
+  const SimulatedRecording one =
+      driven(of_the_left_wheel(2.0), {.gyro = true, .survey = true, .range_sensor = true});
+  const std::vector<GrossStart> starts = starts_of(one);
+  ASSERT_FALSE(starts.empty());
+  ASSERT_TRUE(starts.front().travel);
+  EXPECT_NEAR(*starts.front().travel, 1.0, 0.05);
+  const WheelCalibration found =
+      calibrate_wheels({one.drive.recording}, one.model, CalibrationOptions());
+  ASSERT_TRUE(found.scale && found.diameter_ratio);
+  EXPECT_NEAR(found.scale->value, 2.0, 4.0 * found.scale->sd);
+  EXPECT_LT(found.scale->sd, 0.01);
+  EXPECT_NEAR(found.diameter_ratio->value, 1.0 / 3.0, 4.0 * found.diameter_ratio->sd);
 }
 
 /// Calibrated without a compass, whose readings would lead any start.
@@ -156,6 +185,30 @@ TEST(GrossFit, AModelWithTheRightFactorFits) {
           << constant.name << cause.g << equipment.gyro;
     }
   }
+}
+
+/// Of which the wheels as stated make so much of a knot that least squares lay the robot onto a
+/// landmark that it sees at 4.4 m.
+TEST(GrossFit, LeavesALandmarkOntoWhichTheTrajectoryFolds) {
+  constexpr std::uint64_t kFolding = 1061;
+  SimulationSettings settings;
+  settings.mesh = "4x4";
+  settings.tours = 2;
+  settings.seed = kFolding;
+  settings.uneven = true;
+  settings.range_sensor = true;
+  settings.fix_rate = 0.5;
+  Effect left = of_the_left_wheel(1.0);
+  SimulatedRecording one = simulate(settings, {left});
+  one.drive.recording.survey.clear();
+  one.drive.recording.fixes.clear();
+  Model model = one.model;
+  left.coefficients = {0.0};
+  model.effects = {left};
+  const ModelFit fit = fit_model({one.drive.recording}, model, FitOptions());
+  const double found = fit.model.effects.front().coefficients.front();
+  EXPECT_NEAR(found, 1.0, 0.005);
+  EXPECT_LT(fit.chi2, 1.3 * fit.dof);
 }
 
 }  // namespace

@@ -146,5 +146,17 @@ TEST(MeasurementRows, WhatFitsHasNoError) {
   EXPECT_LT(measurement_rows(problem, one, state, one.value, {}).error.norm(), 1e-15);
 }
 
+/// Of no robot that saw it from 2 m, but of a trajectory that has folded up.
+TEST(MeasurementRows, OnALandmarkThatWasSeenFromAfarADirectionHasABoundedSlope) {
+  RecordingState state;
+  state.landmarks = {{1.0, 1.0}, {0.0, 0.0}};
+  state.poses = {{1.0, 1.0 - 1e-6, 0.0}, {1.0, 1.0, 0.0}};
+  Measurement one = measurement(&kinds::view, 2, 0, 2);
+  one.value << 2.0, 0.0, 0.0, 0.0;
+  const MeasurementRows rows = measurement_rows(small_problem(), one, state, one.value, {});
+  EXPECT_NEAR(rows.by_to.row(0).head<2>().norm(), 1.0, 1e-9);
+  EXPECT_LT(rows.by_to.row(1).head<2>().norm(), 100.0 / 2.0);
+}
+
 }  // namespace
 }  // namespace trussmap::measurement_rows_test

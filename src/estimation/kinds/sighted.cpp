@@ -33,12 +33,17 @@ MeasurementRows offset_rows(const Ends& at, const Vector4& value,
 }
 
 MeasurementRows polar_rows(const Ends& at, const Vector4& value, const effects::ViewPattern& view) {
+  // A trajectory that folds up may bring the robot onto what it saw from afar; the direction's slope
+  // there, which grows without bound, would hold it: it is that of no less than this share of what
+  // was measured.
+  constexpr double kNearShare = 0.02;
   MeasurementRows rows;
   const Sight seen = sight(at.from, at.landmark, view);
   const double range = std::max(seen.offset.norm(), 1e-9);
+  const double far = std::max(range, kNearShare * value[0]);
   Matrix2 polar;  // d(range, direction)/d(offset)
   polar.row(0) = seen.offset.transpose() / range;
-  polar.row(1) = quarter_turn(seen.offset).transpose() / (range * range);
+  polar.row(1) = quarter_turn(seen.offset).transpose() / (range * far);
   rows.error[0] = range * (1.0 + view.range_scale) + view.range - value[0];
   rows.error[1] =
       wrap_angle(direction(seen.offset) - at.from.heading - view.heading + view.bearing - value[1]);
