@@ -93,6 +93,20 @@ std::vector<Effect> wrong_signs(const Robot& robot) {
   return result;
 }
 
+/// What the rest does not show is no error of the drive: a compass that a building turns.
+bool is_of_compass_alone(std::vector<DrivenRecording> recordings, const ModelFit& given) {
+  constexpr int kFewest = 50;      // dof that would show it
+  constexpr double kShare = 0.25;  // of those with a compass
+  if (std::ranges::none_of(recordings, [](const auto& one) { return one.drive.has_compass(); })) {
+    return false;
+  }
+  for (DrivenRecording& one : recordings) one.drive.heading.clear();
+  const auto rest =
+      if_possible<ModelFit>([&] { return fit_model(recordings, given.model, given.options); });
+  return rest && rest->dof > std::max<double>(kFewest, kShare * given.dof) &&
+         rest->chi2 < kLittleLeft * rest->dof;
+}
+
 double cost_of(const ModelFit& fit) {
   constexpr double kPerCoefficient = 4.0;  // of chi^2
   const Effect& effect = fit.model.effects.back();
@@ -106,6 +120,7 @@ std::optional<ModelFit> gross_cause(const std::vector<DrivenRecording>& recordin
   const fitting::FitState& state = *given.state;
   if (given.chi2 < kGrossMisfit * std::max(1, given.dof)) return std::nullopt;
   if (state.problem.measurements.size() > kMostMeasurements) return std::nullopt;
+  if (is_of_compass_alone(recordings, given)) return std::nullopt;
   const ScoreTest tests(state);
   for (const Effect& wrong : wrong_signs(given.model.robot)) {
     if (tests.is_present(wrong)) continue;
