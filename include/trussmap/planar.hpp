@@ -51,7 +51,9 @@ struct HeadingEstimate {
 [[nodiscard]] double direction(const Vector2& vector);
 
 /// The vector turned by a quarter turn counter-clockwise.
-[[nodiscard]] Vector2 quarter_turn(const Vector2& vector);
+[[nodiscard]] inline Vector2 quarter_turn(const Vector2& vector) {
+  return {-vector.y(), vector.x()};
+}
 
 /// R(angle): R * v turns v counter-clockwise.
 [[nodiscard]] Matrix2 rotation(double angle);

@@ -5,6 +5,7 @@
 #include "drive/unit_arc.hpp"
 #include "odometry/row_reckoner.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace trussmap::estimation {
@@ -42,23 +43,36 @@ class MeanAngle {
   int count_ = 0;
 };
 
-const effects::DrivePattern* pattern_at(const std::vector<effects::DrivePattern>* patterns,
-                                        std::size_t row) {
-  return patterns == nullptr || patterns->empty() ? nullptr : &(*patterns)[row];
+/// An effect that acts on the drive: what a unit of it does in each row, and has done so far.
+struct Acting {
+  const std::vector<effects::DrivePattern>& rows;
+  Eigen::Index place;
+  double coefficient;
+  Vector2 moved = Vector2::Zero();
+  double turned = 0.0;
+  double read = 0.0;  ///< sum over the readings
+};
+
+std::vector<Acting> acting_among(
+    const std::vector<const std::vector<effects::DrivePattern>*>& patterns,
+    const Eigen::VectorXd& coefficients) {
+  std::vector<Acting> result;
+  for (Eigen::Index k = 0; k < coefficients.size(); ++k) {
+    const auto* rows = patterns[static_cast<std::size_t>(k)];
+    if (rows != nullptr && !rows->empty()) result.push_back({*rows, k, coefficients[k]});
+  }
+  return result;
 }
 
-Step step_of(const SegmentRow& row,
-             const std::vector<const std::vector<effects::DrivePattern>*>& patterns,
-             const Eigen::VectorXd& coefficients) {
+Step step_of(const SegmentRow& row, const std::vector<Acting>& effects) {
   Step step{row.path, row.slip, row.turn, 0.0};
-  for (Eigen::Index k = 0; k < coefficients.size(); ++k) {
-    const effects::DrivePattern* pattern =
-        pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
-    if (pattern == nullptr) continue;
-    step.path += coefficients[k] * row.part * pattern->advance;
-    step.slip += coefficients[k] * row.part * pattern->slip;
-    step.turn += coefficients[k] * row.part * pattern->turn;
-    step.compass += coefficients[k] * pattern->compass;
+  for (const Acting& one : effects) {
+    const effects::DrivePattern& unit = one.rows[row.row];
+    const double g = one.coefficient * row.part;
+    step.path += g * unit.advance;
+    step.slip += g * unit.slip;
+    step.turn += g * unit.turn;
+    step.compass += one.coefficient * unit.compass;
   }
   return step;
 }
@@ -106,42 +120,38 @@ SegmentWithEffects segment_motion(
     const std::vector<SegmentRow>& rows,
     const std::vector<const std::vector<effects::DrivePattern>*>& patterns,
     const Eigen::VectorXd& coefficients) {
-  const Eigen::Index count = coefficients.size();
+  std::vector<Acting> effects = acting_among(patterns, coefficients);
   Pose pose;
-  Eigen::Matrix<double, 4, Eigen::Dynamic> slopes(4, count);
-  slopes.setZero();
+  drive::RowHeading R;
   MeanAngle mean;
   int readings = 0;
   for (const SegmentRow& row : rows) {
-    const Step step = step_of(row, patterns, coefficients);
+    const Step step = step_of(row, effects);
     const drive::UnitArc arc = drive::unit_arc(step.turn);
-    const Matrix2 R = rotation(pose.heading);
+    const Vector2 ahead = row.part * (R * arc.end);
+    const Vector2 turning =
+        row.part * (R * (step.path * arc.slope + step.slip * quarter_turn(arc.slope)));
     const Vector2 chord = R * step.end(arc);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      slopes.col(k).head<2>() += slopes(2, k) * quarter_turn(chord);
-      const effects::DrivePattern* pattern =
-          pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
-      if (pattern == nullptr) continue;
-      const Vector2 own =
-          row.part *
-          (pattern->advance * arc.end + pattern->slip * quarter_turn(arc.end) +
-           pattern->turn * (step.path * arc.slope + step.slip * quarter_turn(arc.slope)));
-      slopes.col(k).head<2>() += R * own;
-      slopes(2, k) += row.part * pattern->turn;
+    for (Acting& one : effects) {
+      const effects::DrivePattern& unit = one.rows[row.row];
+      one.moved += one.turned * quarter_turn(chord) + unit.advance * ahead +
+                   unit.slip * quarter_turn(ahead) + unit.turn * turning;
+      one.turned += row.part * unit.turn;
     }
     pose.x += chord.x();
     pose.y += chord.y();
     pose.heading += step.turn;
+    R.turn(step.turn, arc);
     if (std::isnan(row.reading)) continue;
     ++readings;
     mean.add(row.reading - step.compass - pose.heading);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const effects::DrivePattern* pattern =
-          pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
-      slopes(3, k) -= slopes(2, k) + (pattern == nullptr ? 0.0 : pattern->compass);
-    }
+    for (Acting& one : effects) one.read -= one.turned + one.rows[row.row].compass;
   }
-  if (readings > 0) slopes.row(3) /= readings;
+  Eigen::Matrix<double, 4, Eigen::Dynamic> slopes =
+      Eigen::Matrix<double, 4, Eigen::Dynamic>::Zero(4, coefficients.size());
+  for (const Acting& one : effects) {
+    slopes.col(one.place) << one.moved, one.turned, one.read / std::max(readings, 1);
+  }
   return {{pose, mean.mean()}, slopes};
 }
 
@@ -149,22 +159,24 @@ std::vector<Matrix4> row_influences(const std::vector<SegmentRow>& rows) {
   std::vector<Matrix4> influences(rows.size(), Matrix4::Zero());
   std::vector<Vector2> ends(rows.size());
   Pose pose;
+  drive::RowHeading R;
   const int readings = readings_of(rows);
   int read = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const SegmentRow& row = rows[k];
     const Step step{row.path, row.slip, row.turn};
     const drive::UnitArc arc = drive::unit_arc(step.turn);
-    const Matrix2 R = row.part * rotation(pose.heading);
     Matrix4& own = influences[k];
-    own.block<2, 1>(0, 0) = R * arc.end;
-    own.block<2, 1>(0, 1) = R * quarter_turn(arc.end);
-    own.block<2, 1>(0, 2) = R * (step.path * arc.slope + step.slip * quarter_turn(arc.slope));
+    own.block<2, 1>(0, 0) = row.part * (R * arc.end);
+    own.block<2, 1>(0, 1) = quarter_turn(own.block<2, 1>(0, 0));
+    own.block<2, 1>(0, 2) =
+        row.part * (R * (step.path * arc.slope + step.slip * quarter_turn(arc.slope)));
     own(2, 2) = row.part;
-    const Vector2 chord = rotation(pose.heading) * step.end(arc);
+    const Vector2 chord = R * step.end(arc);
     pose.x += chord.x();
     pose.y += chord.y();
     pose.heading += step.turn;
+    R.turn(step.turn, arc);
     ends[k] = pose.position();
     if (readings == 0) continue;
     own(3, 2) = -row.part * (readings - read) / readings;  // this row's own and all later ones

@@ -21,10 +21,6 @@ double direction(const Vector2& vector) {
   return std::atan2(vector.y(), vector.x());
 }
 
-Vector2 quarter_turn(const Vector2& vector) {
-  return {-vector.y(), vector.x()};
-}
-
 Matrix2 rotation(double angle) {
   const double c = std::cos(angle);
   const double s = std::sin(angle);
