@@ -130,6 +130,21 @@ bool circles(const std::vector<double>& moved) {
          kNoLess * *std::min_element(moved.begin(), lately);
 }
 
+/// Whether rounds wander about far from any fit: each figure is what one left, chi^2/dof. What
+/// finds its way in the end comes nearer from one few rounds to the next.
+bool wanders(const std::vector<double>& left) {
+  constexpr int kPatience = 5;  // rounds
+  constexpr double kFar = 100.0;
+  constexpr double kNearer = 0.7;
+  double least = std::numeric_limits<double>::infinity();
+  int without = 0;
+  for (const double one : left) {
+    without = one < kNearer * least ? 0 : without + 1;
+    least = std::min(least, one);
+  }
+  return without >= kPatience && least > kFar;
+}
+
 std::vector<EffectEstimate> estimates(const Fitting& now) {
   const FitState& fit = now.fit;
   std::vector<EffectEstimate> result;
@@ -256,6 +271,7 @@ Fitting fit_from(const std::vector<DrivenRecording>& recordings, const Model& mo
   start_fit(task, now);
   FitChange change;
   std::vector<double> moved;
+  std::vector<double> left;
   for (; now.round < options.max_rounds; ++now.round) {
     const bool first = now.round == 0;
     const std::size_t measured = fit.problem.measurements.size();
@@ -271,10 +287,13 @@ Fitting fit_from(const std::vector<DrivenRecording>& recordings, const Model& mo
                    : adjust_once(task, same ? &fit.adjustment : nullptr, now);
     fit.settled = is_settled(options, now, change);
     moved.push_back(std::max(change.coefficients, change.offsets / options.still_offset));
-    const bool last = fit.settled || now.round + 1 == options.max_rounds || circles(moved);
+    left.push_back(fit.adjustment.chi2 / std::max(1, fit.adjustment.dof));
+    const bool last =
+        fit.settled || now.round + 1 == options.max_rounds || circles(moved) || wanders(left);
     if ((first || last) && options.fit_effects && hold_one(task, now)) {
       fit.settled = false;
       moved.clear();
+      left.clear();
       continue;
     }
     if (last) break;
