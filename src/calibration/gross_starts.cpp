@@ -2,171 +2,22 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/gross_starts.hpp"
 
+#include "calibration/marked_course.hpp"
 #include "calibration/start_by_turns.hpp"
 #include "drive/steered_motion.hpp"
-#include "odometry/merge.hpp"
 #include "statistics/median.hpp"
-#include "trussmap/dead_reckoning.hpp"
 #include "trussmap/planar.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
-#include <string>
-#include <utility>
+#include <vector>
 
 namespace trussmap::calibration {
 namespace {
 
 constexpr std::size_t kMostStarts = 4;
 constexpr std::size_t kFewestChords = 6;
-
-/// Where something tells of the robot's place.
-struct Mark {
-  std::size_t step = 0;  ///< so many steps have been driven
-  Vector2 offset = Vector2::Zero();
-  std::string landmark = {};
-  std::optional<Vector2> known = {};
-};
-
-struct Chord {
-  std::size_t from = 0, to = 0;  ///< marks
-  double length = 0.0;           ///< m, as known; of a return the path as driven
-};
-
-/// A session's rows, merged from mark to mark into what hardly turns.
-struct Course {
-  std::vector<BodyMotion> steps;
-  std::vector<Mark> marks;
-  std::vector<Chord> chords;
-  std::vector<Chord> returns;
-};
-
-struct TimedMark {
-  double t = 0.0;
-  Mark mark;
-};
-
-/// On the robot, m.
-Vector2 place_of(const std::optional<Mounting>& at) {
-  return at ? Vector2(at->x, at->y) : Vector2::Zero().eval();
-}
-
-std::vector<TimedMark> marks_of(const DrivenRecording& recording, const Mountings& mounted) {
-  const Vector2 sensor = place_of(mounted.sensor);
-  const double yaw = mounted.sensor.value_or(Mounting()).yaw;
-  std::map<std::string, Vector2> survey;
-  for (const SurveyPoint& one : recording.survey) survey[one.landmark] = {one.x, one.y};
-  std::vector<TimedMark> marks;
-  for (const Sighting& one : recording.sightings) {
-    if (!one.locates()) continue;
-    Mark mark;
-    mark.offset = sensor + rotation(yaw) * landmark_offset(one, {}).offset_robot;
-    mark.landmark = one.landmark;
-    if (const auto known = survey.find(one.landmark); known != survey.end()) {
-      mark.known = known->second;
-    }
-    marks.push_back({one.t, mark});
-  }
-  const Vector2 antenna = place_of(mounted.antenna);
-  for (const Fix& one : recording.fixes) {
-    marks.push_back({one.t, {.offset = antenna, .known = Vector2(one.x, one.y)}});
-  }
-  const Vector2 tracked = place_of(mounted.tracked);
-  for (const TruthRow& one : recording.truth) {
-    marks.push_back({one.t, {.offset = tracked, .known = Vector2(one.x, one.y)}});
-  }
-  std::stable_sort(marks.begin(), marks.end(),
-                   [](const TimedMark& a, const TimedMark& b) { return a.t < b.t; });
-  return marks;
-}
-
-/// A few hundred stops at most, evenly in time, each with a few of its marks.
-std::vector<TimedMark> thinned(const std::vector<TimedMark>& marks) {
-  constexpr double kStops = 200.0;
-  constexpr std::size_t kOfAStop = 3;
-  if (marks.empty()) return marks;
-  const double apart = (marks.back().t - marks.front().t) / kStops;
-  std::vector<TimedMark> kept;
-  std::size_t at_stop = 0;
-  for (const TimedMark& one : marks) {
-    const bool same = !kept.empty() && one.t == kept.back().t;
-    if (!kept.empty() && !same && one.t - kept.back().t < apart) continue;
-    at_stop = same ? at_stop + 1 : 1;
-    if (at_stop <= kOfAStop) kept.push_back(one);
-  }
-  return kept;
-}
-
-void add_steps(const MotionRows& drive, double from, double to, std::vector<BodyMotion>& steps) {
-  constexpr double kStraight = 0.05;  // rad
-  BodyMotion sum;
-  bool any = false;
-  for (const odometry::DriveRow& row : odometry::rows_between(drive, from, to)) {
-    const BodyMotion body = odometry::motion_of(drive, row);
-    sum = {sum.forward + body.forward, sum.sideways + body.sideways, sum.turn + body.turn};
-    any = true;
-    if (std::abs(sum.turn) < kStraight) continue;
-    steps.push_back(std::exchange(sum, {}));
-    any = false;
-  }
-  if (any) steps.push_back(sum);
-}
-
-void find_chords(Course& course) {
-  constexpr std::size_t kFurthest = 4;  // of the places known, one after the other
-  std::vector<std::size_t> known;
-  for (std::size_t k = 0; k < course.marks.size(); ++k) {
-    if (course.marks[k].known) known.push_back(k);
-  }
-  for (std::size_t a = 0; a < known.size(); ++a) {
-    for (std::size_t b = a + 1; b < known.size() && b <= a + kFurthest; ++b) {
-      if (course.marks[known[a]].step == course.marks[known[b]].step) continue;  // seen, not driven
-      const double length = (*course.marks[known[a]].known - *course.marks[known[b]].known).norm();
-      if (length > kDefaultMinDrive) course.chords.push_back({known[a], known[b], length});
-    }
-  }
-}
-
-void find_returns(Course& course) {
-  constexpr std::size_t kMost = 60;
-  std::vector<double> path{0.0};
-  for (const BodyMotion& one : course.steps) {
-    path.push_back(path.back() + std::hypot(one.forward, one.sideways));
-  }
-  std::map<std::string, std::size_t> last;
-  for (std::size_t k = 0; k < course.marks.size(); ++k) {
-    const Mark& mark = course.marks[k];
-    if (mark.landmark.empty()) continue;
-    if (const auto before = last.find(mark.landmark); before != last.end()) {
-      const double driven = path[mark.step] - path[course.marks[before->second].step];
-      if (driven > kDefaultMinDrive) course.returns.push_back({before->second, k, driven});
-    }
-    last[mark.landmark] = k;
-  }
-  std::stable_sort(course.returns.begin(), course.returns.end(),
-                   [](const Chord& a, const Chord& b) { return a.length < b.length; });
-  if (course.returns.size() > kMost) course.returns.resize(kMost);
-}
-
-Course course_of(const DrivenRecording& recording, const Robot& robot) {
-  constexpr std::size_t kMostSteps = 1500;
-  Course course;
-  const MotionRows& drive = recording.drive;
-  double from = drive.start();
-  for (TimedMark& one : thinned(marks_of(recording, robot.mounted))) {
-    if (one.t < drive.start() || one.t > drive.t.back()) continue;
-    add_steps(drive, from, one.t, course.steps);
-    if (course.steps.size() > kMostSteps) break;
-    from = one.t;
-    one.mark.step = course.steps.size();
-    course.marks.push_back(std::move(one.mark));
-  }
-  find_chords(course);
-  find_returns(course);
-  return course;
-}
 
 /// A step as it is with these constants.
 BodyMotion step_with(const GrossStart& tried, const BodyMotion& one, const Robot& robot) {
@@ -376,47 +227,58 @@ std::vector<Rated> rated_grid(const Disagreement& disagreement, Beside beside) {
   return grid;
 }
 
-/// Downhill between the points of the grid, by ever shorter steps.
+/// Downhill between the points of the grid, by ever shorter steps: after a long drive a valley is
+/// narrower than the grid.
 Rated descended(const Disagreement& disagreement, Rated at, Beside beside) {
   constexpr int kHalvings = 5;
+  constexpr int kMostSteps = 8;  // of one length
   double share = 0.5;
-  for (int round = 0; round < kHalvings; ++round, share *= 0.5) {
-    const Rated before = at;
-    for (const double sign : {1.0, -1.0}) {
-      for (const bool other : {false, true}) {
-        if (other && beside == Beside::nothing) continue;
-        Rated next = before;
-        (other ? next.other : next.log_turn) += sign * share * (other ? kOtherStep : kTurnStep);
-        next.disagreement = disagreement.of(next.start(beside));
-        if (next.disagreement < at.disagreement) at = next;
+  for (int halving = 0; halving < kHalvings; ++halving, share *= 0.5) {
+    for (int step = 0; step < kMostSteps; ++step) {
+      const Rated before = at;
+      for (const int turn : {-1, 0, 1}) {
+        for (const int other : {-1, 0, 1}) {
+          if ((turn == 0 && other == 0) || (other != 0 && beside == Beside::nothing)) continue;
+          Rated next{before.log_turn + turn * share * kTurnStep,
+                     before.other + other * share * kOtherStep};
+          next.disagreement = disagreement.of(next.start(beside));
+          if (next.disagreement < at.disagreement) at = next;
+        }
       }
+      if (at.disagreement == before.disagreement) break;
     }
   }
   return at;
 }
 
-/// The best of their neighbourhoods.
-std::vector<GrossStart> starts_by_places(const Disagreement& disagreement, Beside beside) {
+/// The best of their neighbourhoods, best first.
+std::vector<Rated> valleys(const Disagreement& disagreement, Beside beside) {
   constexpr double kNear = 0.15;  // of a logarithm
-  constexpr double kMuchBetter = 0.6;
-  if (!disagreement.tells()) return {};
-  std::vector<Rated> kept;
-  const double as_stated = disagreement.of({});
+  constexpr std::size_t kMostValleys = 6;
+  std::vector<Rated> found;
   for (const Rated& one : rated_grid(disagreement, beside)) {
-    const bool near = std::any_of(kept.begin(), kept.end(), [&one](const Rated& other) {
+    if (found.size() == kMostValleys) break;
+    const bool near = std::any_of(found.begin(), found.end(), [&one](const Rated& other) {
       return std::abs(one.log_turn - other.log_turn) < kNear &&
              std::abs(one.other - other.other) < kNear;
     });
-    if (near) continue;
-    if (one.disagreement > kMuchBetter * as_stated) break;
-    if (std::abs(one.log_turn) < kNearTurn && std::abs(one.other) < kNearRatio) break;
-    kept.push_back(one);
-    if (kept.size() == kMostStarts) break;
+    if (!near) found.push_back(one);
   }
+  for (Rated& one : found) one = descended(disagreement, one, beside);
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Rated& a, const Rated& b) { return a.disagreement < b.disagreement; });
+  return found;
+}
+
+std::vector<GrossStart> starts_by_places(const Disagreement& disagreement, Beside beside) {
+  constexpr double kMuchBetter = 0.6;
+  if (!disagreement.tells()) return {};
+  const double as_stated = disagreement.of({});
   std::vector<GrossStart> starts;
-  starts.reserve(kept.size());
-  for (const Rated& one : kept) {
-    starts.push_back(disagreement.completed(descended(disagreement, one, beside).start(beside)));
+  for (const Rated& one : valleys(disagreement, beside)) {
+    if (one.disagreement > kMuchBetter * as_stated || starts.size() == kMostStarts) break;
+    if (std::abs(one.log_turn) < kNearTurn && std::abs(one.other) < kNearRatio) break;
+    starts.push_back(disagreement.completed(one.start(beside)));
   }
   return starts;
 }

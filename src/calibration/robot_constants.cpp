@@ -393,15 +393,16 @@ RobotConstants robot_constants(const Model& before, const WheelCalibration& foun
   doubt_sides(found, result);
   add_places(found.mountings, before, result.list);
   add_fixes(found.fixes, before, result.list);
-  for (const auto& [name, noise, old] :
-       {std::tuple("left wheel noise", &found.noise_left, before.noise.left),
-        std::tuple("right wheel noise", &found.noise_right, before.noise.right)}) {
+  const Noise pasted = as_pasted(found.model.noise, result.list);
+  for (const auto& [name, noise, size] :
+       {std::tuple("left wheel noise", &found.noise_left, &Noise::left),
+        std::tuple("right wheel noise", &found.noise_right, &Noise::right)}) {
     if (!*noise) continue;
     result.list.push_back({.name = name,
                            .unit = "m^1/2",
-                           .before = old,
-                           .after = (*noise)->value,
-                           .sd = (*noise)->sd,
+                           .before = before.noise.*size,
+                           .after = pasted.*size,
+                           .sd = (*noise)->sd * pasted.*size / found.model.noise.*size,
                            .note = "sd of its travel per root of a metre"});
   }
   return result;

@@ -10,6 +10,7 @@
 #include "calibration/sought_constants.hpp"
 #include "drive/steered_motion.hpp"
 #include "effects/steering.hpp"
+#include "effects/wheel_factors.hpp"
 #include "estimation/recording_adjustment.hpp"
 #include "fit/effect_columns.hpp"
 #include "geometry/index.hpp"
@@ -110,6 +111,18 @@ std::vector<double> shortened(const std::vector<double>& g, std::vector<double> 
   return g;
 }
 
+/// Wheels' noise is of what they show, and moves the body by factors far from one, too. The motion
+/// has them already.
+void take_in_factors(const Model& model, std::vector<DrivenRecording>& corrected) {
+  constexpr double kFar = 0.03;  // nearer to one, no noise is stated as exactly
+  for (std::size_t s = 0; s < corrected.size(); ++s) {
+    const std::optional<WheelFactors> factors = effects::wheel_factors(
+        model.effects, model.robot, static_cast<int>(s), effects::FactorsAct::in_turn);
+    if (!factors || effects::difference(*factors, model.robot) < kFar) continue;
+    corrected[s].drive.factors = factors;
+  }
+}
+
 Fitted fit(const std::vector<DrivenRecording>& recordings, const Model& model, const Wanted& wanted,
            const WheelCalibrationOptions& options, const References& references) {
   Fitted result;
@@ -117,6 +130,7 @@ Fitted fit(const std::vector<DrivenRecording>& recordings, const Model& model, c
   result.parameters = parameters_of(wanted, result.corrected, model.robot, options, references);
   if (drive::has_steering(model.robot))
     scale_steering(in_force(model), wanted, model.robot, result);
+  take_in_factors(model, result.corrected);
   result.problem = estimation::make_problem(result.corrected, model, options.problem);
   estimation::RecordingAdjustmentOptions how;
   how.gate = options.gate;

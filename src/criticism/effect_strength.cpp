@@ -33,8 +33,9 @@ double scatter_left(const ModelFit& fit) {
   return std::max(1.0, fit.chi2 / std::max(1, fit.dof));
 }
 
-bool does_as_well(const ModelFit& with_fewer, const ModelFit& fit) {
-  return chi2_of_all(with_fewer) - chi2_of_all(fit) < kWorthKeeping * scatter_left(fit);
+bool does_as_well(const ModelFit& with_fewer, const ModelFit& fit, std::size_t fewer) {
+  return chi2_of_all(with_fewer) - chi2_of_all(fit) <
+         static_cast<double>(fewer) * kWorthKeeping * scatter_left(fit);
 }
 
 }  // namespace trussmap::criticism

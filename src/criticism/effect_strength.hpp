@@ -23,7 +23,8 @@ inline constexpr double kWorthKeeping = 15.0;
 /// chi^2/dof, at least 1.
 [[nodiscard]] double scatter_left(const ModelFit& fit);
 
-/// Whether a fit with fewer constants is hardly worse.
-[[nodiscard]] bool does_as_well(const ModelFit& with_fewer, const ModelFit& fit);
+/// Whether a fit with so many constants fewer is hardly worse.
+[[nodiscard]] bool does_as_well(const ModelFit& with_fewer, const ModelFit& fit,
+                                std::size_t fewer = 1);
 
 }  // namespace trussmap::criticism

@@ -10,6 +10,7 @@
 #include "trussmap/catalogue.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -39,35 +40,47 @@ ModelFit with_wheel_scale(const std::vector<DrivenRecording>& recordings, const 
   effects.push_back(catalogue_effect(scale->entry));
   effects.back().coefficients = {statistics::median(factors)};
   const std::optional<ModelFit> one = refit_by(recordings, fit, std::move(effects));
-  if (!one || !does_as_well(*one, fit)) return fit;
+  if (!one || !does_as_well(*one, fit, factors.size() - 1)) return fit;
   return *one;
 }
 
+/// What one wheel of another size may be told as, all at once.
+bool is_of_one_wheel(Channel channel) {
+  return channel == Channel::difference || channel == Channel::wheels || is_motion(channel);
+}
+
 /// One wheel of another size is a ratio, a scale and a turning at once: one constant instead of
-/// them, where a fit with it does as well.
+/// them, or of all, where a fit with it does as well.
 std::optional<ModelFit> with_one_wheel(const std::vector<DrivenRecording>& recordings,
                                        const ModelFit& fit, std::size_t first) {
-  std::vector<Effect> effects(fit.model.effects.begin(),
-                              fit.model.effects.begin() + static_cast<std::ptrdiff_t>(first));
-  double ratio = 0.0;
-  double motion = 0.0;
-  for (std::size_t k = first; k < fit.model.effects.size(); ++k) {
-    const Effect& one = fit.model.effects[k];
-    if (one.channel == Channel::difference) {
-      ratio = one.coefficients.front();
-    } else if (is_motion(one.channel)) {
-      motion += one.coefficients.front();
-    } else {
-      effects.push_back(one);
+  const std::vector<Effect>& all = fit.model.effects;
+  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto ratio = std::find_if(begin, all.end(), [](const Effect& one) {
+    return one.channel == Channel::difference && one.is_constant();
+  });
+  const auto told = std::count_if(begin, all.end(),
+                                  [](const Effect& one) { return is_of_one_wheel(one.channel); });
+  if (ratio == all.end() || told < 2) return std::nullopt;
+  const double right = ratio->coefficients.front();
+  std::vector<Effect> others;
+  std::copy_if(begin, all.end(), std::back_inserter(others),
+               [](const Effect& one) { return !is_of_one_wheel(one.channel); });
+  const auto with = [&](const std::vector<Effect>& beside, Effect wheel) {
+    std::vector<Effect> effects(all.begin(), begin);
+    effects.insert(effects.end(), beside.begin(), beside.end());
+    effects.push_back(std::move(wheel));
+    return refit_by(recordings, fit, std::move(effects));
+  };
+  std::vector<std::vector<Effect>> rests{{}};
+  if (!others.empty()) rests.push_back(others);
+  for (const std::vector<Effect>& rest : rests) {
+    for (const Effect& wheel :
+         {wheel_of_other_size(Channel::right, right), wheel_of_other_size(Channel::left, -right)}) {
+      std::optional<ModelFit> one = with(rest, wheel);
+      if (one && does_as_well(*one, fit, all.size() - first - rest.size() - 1)) return one;
     }
   }
-  if (ratio == 0.0 || fit.model.effects.size() - effects.size() < 2) return std::nullopt;
-  const bool right = ratio * motion > 0.0;
-  effects.push_back(right ? wheel_of_other_size(Channel::right, ratio)
-                          : wheel_of_other_size(Channel::left, -ratio));
-  std::optional<ModelFit> one = refit_by(recordings, fit, std::move(effects));
-  if (!one || !does_as_well(*one, fit)) return std::nullopt;
-  return one;
+  return std::nullopt;
 }
 
 /// A gross ratio of the wheels beside a gross scale of both is two wheels of other sizes, each by

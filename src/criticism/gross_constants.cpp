@@ -35,12 +35,24 @@ bool is_scale(Channel channel) {
   return channel == Channel::travel || channel == Channel::sideways;
 }
 
+/// Beside a scale of the travel one of ranges leaves the map without any, where they alone measured
+/// a distance.
+bool measures_distance_without_ranges(std::vector<DrivenRecording> recordings,
+                                      const ModelFit& given) {
+  for (DrivenRecording& one : recordings) {
+    std::erase_if(one.sightings, [](const Sighting& seen) { return !seen.standing(); });
+  }
+  return calibration::measures_distance(recordings, fitting::fitter_options(given.options).problem,
+                                        given.model.noise);
+}
+
 /// Those that the recordings can have, and the model lacks; without coefficients.
 std::vector<Effect> constants_for(const std::vector<DrivenRecording>& recordings,
                                   const ModelFit& given) {
   const fitting::FitState& fit = *given.state;
   const bool scale = calibration::measures_distance(
       recordings, fitting::fitter_options(given.options).problem, given.model.noise);
+  const bool ranges_alone = scale && !measures_distance_without_ranges(recordings, given);
   const bool gyro = odometry::has_gyro(fit.recordings);
   std::vector<Effect> result;
   const fitting::ShapeContext context(fit.recordings, fit.model.robot, fit.paths);
@@ -49,6 +61,7 @@ std::vector<Effect> constants_for(const std::vector<DrivenRecording>& recordings
     const Channel channel = one.effect.channel;
     if (record == nullptr || !record->robot_constant) continue;
     if (!scale && is_scale(channel)) continue;
+    if (ranges_alone && channel == Channel::range_scale) continue;
     if (effects::is_delay(channel)) continue;         // these need a fit that is near already
     if (gyro && channel == Channel::drift) continue;  // its bias is what drifts
     const bool there = std::any_of(

@@ -37,19 +37,20 @@ bool is_wheel_factor(const Effect& effect) {
 }
 
 std::optional<WheelFactors> wheel_factors(const std::vector<Effect>& effects, const Robot& robot,
-                                          int session) {
+                                          int session, FactorsAct act) {
   constexpr double kSame = 1e-6;
   if (robot.drive != DriveKind::differential && robot.drive != DriveKind::unicycle) {
     return std::nullopt;
   }
   const Eigen::Matrix2d stated = drive::by_travel(robot);
   Eigen::Matrix2d by = stated;
-  for (const Eigen::Index wheel : {0, 1}) {
-    const BodyMotion unit{stated(0, wheel), 0.0, stated(1, wheel)};
-    for (const Effect& one : effects) {
-      if (!is_wheel_factor(one) || !is_of_drive(one.channel, robot)) continue;
-      const DrivePattern more = drive_pattern(one.channel, coefficient_of(one, session),
-                                              drive::row_motion(unit, 1.0, robot));
+  for (const Effect& one : effects) {
+    if (!is_wheel_factor(one) || !is_of_drive(one.channel, robot)) continue;
+    const Eigen::Matrix2d on = act == FactorsAct::in_turn ? by : stated;
+    for (const Eigen::Index wheel : {0, 1}) {
+      const DrivePattern more =
+          drive_pattern(one.channel, coefficient_of(one, session),
+                        drive::row_motion(BodyMotion{on(0, wheel), 0.0, on(1, wheel)}, 1.0, robot));
       by.col(wheel) += Eigen::Vector2d(more.advance, more.turn);
     }
   }

@@ -27,10 +27,15 @@ namespace trussmap::effects {
 /// A constant one.
 [[nodiscard]] bool is_wheel_factor(const Effect& effect);
 
+/// What each effect acts on: a fit's act side by side on what the wheels show, a correction takes
+/// out one after the other.
+enum class FactorsAct { side_by_side, in_turn };
+
 /// By these effects; nothing of another drive than two wheels or a unicycle, or where different
 /// motions would show the same. Per session, coefficients of `session` are taken.
 [[nodiscard]] std::optional<WheelFactors> wheel_factors(const std::vector<Effect>& effects,
-                                                        const Robot& robot, int session);
+                                                        const Robot& robot, int session,
+                                                        FactorsAct act = FactorsAct::side_by_side);
 
 /// The largest share of a wheel's travel by which what the body does of it differs.
 [[nodiscard]] double difference(const WheelFactors& a, const WheelFactors& b, const Robot& robot);

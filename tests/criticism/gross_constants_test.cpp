@@ -224,6 +224,24 @@ TEST(SlowGrossConstants, AnErrorOfAnotherKindIsFittedByItself) {
   }
 }
 
+/// Ranges and travels that are off by the same factor fit a smaller map, whose errors are smaller.
+TEST(SlowGrossConstants, WhereRangesAloneMeasureADistanceTheyAreTakenAtTheirWord) {
+  for (const auto& [effect, name] :
+       {std::pair{catalogue_effect("wheel scale", {1.0}), "wheel scale"},
+        std::pair{Effect{"wheel", Channel::left, {"1"}, {0.5}}, "left wheel"}}) {
+    SimulationSettings settings = small_world(26);
+    settings.gyro = true;
+    settings.no_survey = true;
+    settings.ranges_alone = true;
+    const SimulatedRecording one = simulate(settings, {effect});
+    const auto found =
+        gross_constants({testing::driven(one.drive.recording)}, given(one), LegOptions{});
+    ASSERT_TRUE(found) << name;
+    EXPECT_EQ(names_in(*found), std::vector<std::string>{name});
+    EXPECT_NEAR(found->fit.model.effects.back().coefficients.at(0), effect.coefficients[0], 0.01);
+  }
+}
+
 TEST(SlowGrossConstants, AskForNoScaleThatNothingMeasures) {
   SimulationSettings settings = small_world(5);
   settings.no_survey = true;
