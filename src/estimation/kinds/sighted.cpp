@@ -33,9 +33,9 @@ MeasurementRows offset_rows(const Ends& at, const Vector4& value,
 }
 
 MeasurementRows polar_rows(const Ends& at, const Vector4& value, const effects::ViewPattern& view) {
-  // A trajectory that folds up may bring the robot onto what it saw from afar; the direction's slope
-  // there, which grows without bound, would hold it: it is that of no less than this share of what
-  // was measured.
+  // A trajectory that folds up may bring the robot onto what it saw from afar; the direction's
+  // slope there, which grows without bound, would hold it: it is that of no less than this share of
+  // what was measured.
   constexpr double kNearShare = 0.02;
   MeasurementRows rows;
   const Sight seen = sight(at.from, at.landmark, view);
