@@ -24,12 +24,15 @@ bool spans(const std::vector<Fix>& fixes, const Noise& noise) {
   });
 }
 
-bool measures(const DrivenRecording& one, const estimation::ProblemOptions& options,
-              const Noise& noise) {
-  const auto sees_range = [](const Sighting& sighting) { return !sighting.standing(); };
+bool sees_ranges(const DrivenRecording& one) {
+  return std::ranges::any_of(one.sightings,
+                             [](const Sighting& sighting) { return !sighting.standing(); });
+}
+
+bool measures_without(const DrivenRecording& one, const estimation::ProblemOptions& options,
+                      const Noise& noise) {
   return (options.survey && !one.survey.empty()) || (options.truth && !one.truth.empty()) ||
          (options.fixes && spans(one.fixes, noise)) ||
-         std::any_of(one.sightings.begin(), one.sightings.end(), sees_range) ||
          (options.loops && std::any_of(one.loops.begin(), one.loops.end(),
                                        [&](const Loop& loop) { return spans(loop, noise); }));
 }
@@ -38,8 +41,16 @@ bool measures(const DrivenRecording& one, const estimation::ProblemOptions& opti
 
 bool measures_distance(const std::vector<DrivenRecording>& recordings,
                        const estimation::ProblemOptions& options, const Noise& noise) {
-  return std::any_of(recordings.begin(), recordings.end(),
-                     [&](const DrivenRecording& one) { return measures(one, options, noise); });
+  return std::ranges::any_of(recordings, sees_ranges) ||
+         measures_distance_without_ranges(recordings, options, noise);
+}
+
+bool measures_distance_without_ranges(const std::vector<DrivenRecording>& recordings,
+                                      const estimation::ProblemOptions& options,
+                                      const Noise& noise) {
+  return std::ranges::any_of(recordings, [&](const DrivenRecording& one) {
+    return measures_without(one, options, noise);
+  });
 }
 
 }  // namespace trussmap::calibration

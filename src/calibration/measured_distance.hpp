@@ -17,4 +17,9 @@ namespace trussmap::calibration {
 [[nodiscard]] bool measures_distance(const std::vector<DrivenRecording>& recordings,
                                      const estimation::ProblemOptions& options, const Noise& noise);
 
+/// By anything but landmarks that are seen from afar.
+[[nodiscard]] bool measures_distance_without_ranges(const std::vector<DrivenRecording>& recordings,
+                                                    const estimation::ProblemOptions& options,
+                                                    const Noise& noise);
+
 }  // namespace trussmap::calibration

@@ -114,12 +114,12 @@ std::vector<double> shortened(const std::vector<double>& g, std::vector<double> 
 /// Wheels' noise is of what they show, and moves the body by factors far from one, too. The motion
 /// has them already.
 void take_in_factors(const Model& model, std::vector<DrivenRecording>& corrected) {
-  constexpr double kFar = 0.03;  // nearer to one, no noise is stated as exactly
   for (std::size_t s = 0; s < corrected.size(); ++s) {
     const std::optional<WheelFactors> factors = effects::wheel_factors(
         model.effects, model.robot, static_cast<int>(s), effects::FactorsAct::in_turn);
-    if (!factors || effects::difference(*factors, model.robot) < kFar) continue;
-    corrected[s].drive.factors = factors;
+    if (factors && effects::difference(*factors, model.robot) > effects::kFarFactors) {
+      corrected[s].drive.factors = factors;
+    }
   }
 }
 

@@ -35,24 +35,16 @@ bool is_scale(Channel channel) {
   return channel == Channel::travel || channel == Channel::sideways;
 }
 
-/// Beside a scale of the travel one of ranges leaves the map without any, where they alone measured
-/// a distance.
-bool measures_distance_without_ranges(std::vector<DrivenRecording> recordings,
-                                      const ModelFit& given) {
-  for (DrivenRecording& one : recordings) {
-    std::erase_if(one.sightings, [](const Sighting& seen) { return !seen.standing(); });
-  }
-  return calibration::measures_distance(recordings, fitting::fitter_options(given.options).problem,
-                                        given.model.noise);
-}
-
 /// Those that the recordings can have, and the model lacks; without coefficients.
 std::vector<Effect> constants_for(const std::vector<DrivenRecording>& recordings,
                                   const ModelFit& given) {
   const fitting::FitState& fit = *given.state;
-  const bool scale = calibration::measures_distance(
-      recordings, fitting::fitter_options(given.options).problem, given.model.noise);
-  const bool ranges_alone = scale && !measures_distance_without_ranges(recordings, given);
+  const estimation::ProblemOptions used = fitting::fitter_options(given.options).problem;
+  const Noise& noise = given.model.noise;
+  const bool scale = calibration::measures_distance(recordings, used, noise);
+  // Beside a scale of the travel one of ranges would leave the map without any.
+  const bool ranges_alone =
+      scale && !calibration::measures_distance_without_ranges(recordings, used, noise);
   const bool gyro = odometry::has_gyro(fit.recordings);
   std::vector<Effect> result;
   const fitting::ShapeContext context(fit.recordings, fit.model.robot, fit.paths);

@@ -27,6 +27,9 @@ namespace trussmap::effects {
 /// A constant one.
 [[nodiscard]] bool is_wheel_factor(const Effect& effect);
 
+/// By which share factors are far from one: nearer to it, no noise is stated as exactly.
+inline constexpr double kFarFactors = 0.03;
+
 /// What each effect acts on: a fit's act side by side on what the wheels show, a correction takes
 /// out one after the other.
 enum class FactorsAct { side_by_side, in_turn };

@@ -23,6 +23,10 @@ struct Step {
   [[nodiscard]] Vector2 end(const drive::UnitArc& arc) const {
     return path * arc.end + slip * quarter_turn(arc.end);
   }
+  /// Its derivative by the turn.
+  [[nodiscard]] Vector2 slope(const drive::UnitArc& arc) const {
+    return path * arc.slope + slip * quarter_turn(arc.slope);
+  }
 };
 
 /// Mean of angles that lie near each other, wherever whole turns put them.
@@ -129,8 +133,7 @@ SegmentWithEffects segment_motion(
     const Step step = step_of(row, effects);
     const drive::UnitArc arc = drive::unit_arc(step.turn);
     const Vector2 ahead = row.part * (R * arc.end);
-    const Vector2 turning =
-        row.part * (R * (step.path * arc.slope + step.slip * quarter_turn(arc.slope)));
+    const Vector2 turning = row.part * (R * step.slope(arc));
     const Vector2 chord = R * step.end(arc);
     for (Acting& one : effects) {
       const effects::DrivePattern& unit = one.rows[row.row];
@@ -169,8 +172,7 @@ std::vector<Matrix4> row_influences(const std::vector<SegmentRow>& rows) {
     Matrix4& own = influences[k];
     own.block<2, 1>(0, 0) = row.part * (R * arc.end);
     own.block<2, 1>(0, 1) = quarter_turn(own.block<2, 1>(0, 0));
-    own.block<2, 1>(0, 2) =
-        row.part * (R * (step.path * arc.slope + step.slip * quarter_turn(arc.slope)));
+    own.block<2, 1>(0, 2) = row.part * (R * step.slope(arc));
     own(2, 2) = row.part;
     const Vector2 chord = R * step.end(arc);
     pose.x += chord.x();

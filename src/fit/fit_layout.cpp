@@ -45,8 +45,8 @@ std::vector<WheelFactors> far_factors(const FitState& fit, std::size_t sessions,
   const std::vector<Effect> own(
       fit.model.effects.begin(),
       fit.model.effects.end() - static_cast<std::ptrdiff_t>(fit.common_errors));
-  // Nearer to one, no noise is stated as exactly; gross constants are compared on one side of it.
-  const double far = taken_in ? 0.02 : 0.03;
+  // Gross constants are compared on one side of it.
+  const double far = taken_in ? 0.02 : effects::kFarFactors;
   std::vector<WheelFactors> result;
   bool any = false;
   for (std::size_t s = 0; s < sessions; ++s) {

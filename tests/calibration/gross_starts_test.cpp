@@ -43,14 +43,10 @@ SimulatedRecording driven(const Effect& constant, const Equipment& equipment) {
   settings.range_sensor = equipment.range_sensor;
   return simulate(settings, {constant});
 }
-/// One wheel that is larger.
+
+/// A wheel that is larger by this share.
 Effect of_the_left_wheel(double g) {
-  Effect left;
-  left.name = "left wheel";
-  left.channel = Channel::left;
-  left.shape = {Shape("1")};
-  left.coefficients = {g};
-  return left;
+  return {"left wheel", Channel::left, {"1"}, {g}};
 }
 
 SimulatedRecording driven(const std::string& constant, double g, const Equipment& equipment) {
