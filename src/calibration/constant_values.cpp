@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/constant_values.hpp"
 
+#include "calibration/sought_constants.hpp"
 #include "effects/channel_physics.hpp"
 
 #include <algorithm>
@@ -75,7 +76,7 @@ void add_lengths(const Robot& robot, const DriveScales& scales,
                         "times",
                         scales.wheels / scales.length,
                         ConstantKind::length,
-                        {Channel::turn, Channel::wheels},
+                        {Channel::turn},
                         "what it says of its turns"});
       return;
     case DriveKind::skid_steer:
@@ -95,6 +96,17 @@ void add_lengths(const Robot& robot, const DriveScales& scales,
                         ConstantKind::length, turns, "the matrix's third row, after the wheels'"});
     }
   }
+}
+
+/// What the turn is multiplied by of a robot that says it (says_its_turns).
+double turn_factor(const Robot& robot, const ChannelGains& gains, const DriveScales& scales) {
+  double factor = scales.wheels / scales.length;
+  if (robot.drive != DriveKind::wheels) return factor;
+  const std::vector<OwnGain> own = own_gains(robot, gains);
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    if (turns_alone(robot, k)) factor += own[k].g - mean_own(own);
+  }
+  return factor;
 }
 
 /// What is no matter of wheels.
@@ -119,6 +131,10 @@ void add_sensors(const Robot& robot, const ChannelGains& gains, const DriveScale
       robot.drive == DriveKind::tricycle
           ? "1: the travel is the rear axle's (drive ackermann), 0: the steered wheel's"
           : "1: the travel is the steered wheel's (drive tricycle), 0: the rear axle's");
+  if (says_its_turns(robot)) {
+    add("turn bias", "rad/s", 0.0 - g(drift) / turn_factor(robot, gains, scales), drift,
+        "subtract it from the turn rate, before the factor");
+  }
   add("gyro scale", "times", 1.0 + g(gyro_scale), gyro_scale, "the rate, after the bias");
   add("gyro bias", "rad/s", g(gyro) / (1.0 + g(gyro_scale)), gyro, "subtract it");
   constexpr const char* kOfAxle = "of the axle's centre";

@@ -14,15 +14,16 @@ namespace {
 /// The stated constants with those of a start in their place.
 std::vector<double> at_start(std::vector<double> g, const GrossStart& start, const Robot& robot) {
   const std::vector<SoughtConstant> constants = sought_constants(robot);
-  const bool scales = std::ranges::any_of(
+  const bool wheels = std::ranges::any_of(
       constants, [](const SoughtConstant& one) { return one.channel == Channel::wheels; });
-  const double way = scales ? start.travel.value_or(0.0) : 0.0;
+  const double way = start.travel.value_or(0.0);
+  const double turned = wheels ? way : 0.0;  // larger wheels turn the robot further, too
   for (std::size_t k = 0; k < constants.size(); ++k) {
-    // Larger wheels turn the robot further, too.
-    if (constants[k].channel == Channel::turn) g[k] = (1.0 + start.turn) / (1.0 + way) - 1.0;
+    if (constants[k].channel == Channel::turn) g[k] = (1.0 + start.turn) / (1.0 + turned) - 1.0;
     if (constants[k].channel == Channel::difference) g[k] = start.difference;
     if (constants[k].channel == Channel::steer) g[k] += start.steer;
     if (constants[k].channel == Channel::wheels && start.travel) g[k] = way;
+    if (constants[k].channel == Channel::travel && start.travel) g[k] = way;
   }
   return g;
 }

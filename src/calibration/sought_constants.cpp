@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kUseless = 0.1;  // a standard error of a ratio that is no calibration
 
+constexpr double kUselessDrift = 0.01;  // rad/s
+
 /// The same of a steering's gain. Small angles tell it from the wheelbase so badly that both get
 /// worse.
 constexpr double kUselessGain = 0.03;
@@ -31,6 +33,24 @@ SoughtConstant turn_constant() {
           .joined = joined_factors};
 }
 
+/// Of a robot that says how far it has turned: what it says has a factor, and a bias.
+SoughtConstant told_turn_constant() {
+  SoughtConstant result = turn_constant();
+  result.symbol = "the scale of its turns";
+  result.ratio = [](double g) { return 1.0 + g; };
+  return result;
+}
+
+SoughtConstant drift_constant() {
+  constexpr const char* kMissing = "the drive is too short to show it";
+  return {.name = "heading drift",
+          .channel = Channel::drift,
+          .symbol = "the bias of its turn rate",
+          .missing = kMissing,
+          .missing_without_distance = kMissing,
+          .ratio = [](double) { return 1.0; }};
+}
+
 SoughtConstant scale_constant() {
   return {.name = "wheel scale",
           .channel = Channel::wheels,
@@ -39,6 +59,15 @@ SoughtConstant scale_constant() {
               "the robot hardly gets anywhere, and turns on the spot cannot tell larger "
               "wheels from a smaller wheelbase; drive straight lines",
           .joined = joined_factors};
+}
+
+/// Of such a robot the scale of its way alone.
+SoughtConstant travel_constant() {
+  SoughtConstant result = scale_constant();
+  result.name = "travel scale";
+  result.channel = Channel::travel;
+  result.missing = "the robot hardly gets anywhere; drive straight lines";
+  return result;
 }
 
 SoughtConstant diameters_constant() {
@@ -108,6 +137,23 @@ SoughtConstant other_axle_constant() {
 
 }  // namespace
 
+bool turns_alone(const Robot& robot, std::size_t column) {
+  const auto at = static_cast<Eigen::Index>(column);
+  return robot.matrix(0, at) == 0.0 && robot.matrix(1, at) == 0.0 && robot.matrix(2, at) != 0.0;
+}
+
+bool says_its_turns(const Robot& robot) {
+  if (robot.drive == DriveKind::unicycle) return robot.columns.size() > 1;
+  if (robot.drive != DriveKind::wheels) return false;
+  int turning = 0;
+  int alone = 0;
+  for (std::size_t k = 0; k < robot.columns.size(); ++k) {
+    turning += robot.matrix(2, static_cast<Eigen::Index>(k)) != 0.0 ? 1 : 0;
+    alone += turns_alone(robot, k) ? 1 : 0;
+  }
+  return turning == 1 && alone == 1;
+}
+
 double SoughtConstant::slope(double g) const {
   constexpr double kStep = 1e-6;
   return (joined(g, kStep) - joined(g, -kStep)) / (2.0 * kStep);
@@ -118,7 +164,8 @@ std::vector<SoughtConstant> sought_constants(const Robot& robot) {
     case DriveKind::differential:
       return {diameters_constant(), turn_constant(), scale_constant()};
     case DriveKind::unicycle:
-      return {turn_constant(), scale_constant()};
+      if (!says_its_turns(robot)) return {told_turn_constant(), travel_constant()};
+      return {told_turn_constant(), travel_constant(), drift_constant()};
     case DriveKind::tricycle:
       return {steering_offset_constant(), turn_constant(),          scale_constant(),
               steering_gain_constant(),   steered_place_constant(), other_axle_constant()};
@@ -133,12 +180,18 @@ std::vector<SoughtConstant> sought_constants(const Robot& robot) {
   for (const ChannelFacts& one : channels()) {
     const std::optional<std::size_t> wheel = wheel_of(one.channel);
     if (!wheel || !effects::is_of_drive(one.channel, robot)) continue;
+    if (says_its_turns(robot) && turns_alone(robot, *wheel)) continue;
     const std::string& column = robot.columns[*wheel];
     result.push_back({.name = "radius of " + column,
                       .channel = one.channel,
                       .symbol = "the radius of " + column});
   }
-  result.push_back(turn_constant());
+  if (says_its_turns(robot)) {
+    result.push_back(told_turn_constant());
+    result.push_back(drift_constant());
+  } else {
+    result.push_back(turn_constant());
+  }
   // With these the wheels may roll in other directions than stated, too, to first order: together
   // with the place and the heading of the truth's point all nine numbers from three wheels'
   // travels, or from as many as four can show, to (f, s, a).
@@ -157,7 +210,7 @@ std::vector<SoughtConstant> sought_constants(const Robot& robot) {
 }
 
 bool shows_scale(Channel channel) {
-  return channel == Channel::wheels || channel == Channel::wheel1;
+  return channel == Channel::wheels || channel == Channel::travel || channel == Channel::wheel1;
 }
 
 std::vector<Channel> seldom_constants(const Robot& robot) {
@@ -172,6 +225,7 @@ double useless_sd(const SoughtConstant& one, const Model& model) {
   constexpr double kUselessShare = 0.25;
   if (one.channel == Channel::other_axle) return kUselessShare;
   if (one.seldom) return kUseless * model.robot.length;
+  if (one.channel == Channel::drift) return kUselessDrift;
   if (one.channel != Channel::steer_gain) return kUseless;
   for (const Effect& effect : model.effects) {
     if (effect.name == one.name) return kUselessGain * std::abs(1.0 + effect.coefficients[0]);

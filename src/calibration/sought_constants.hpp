@@ -39,6 +39,13 @@ struct SoughtConstant {
   [[nodiscard]] double slope(double g) const;
 };
 
+/// Whether a column of the drive `wheels` turns the robot, and moves it nowhere.
+[[nodiscard]] bool turns_alone(const Robot& robot, std::size_t column);
+
+/// Whether one of its columns says how far the robot has turned, and nothing else, as what has
+/// integrated a gyro does: what it says may have a bias.
+[[nodiscard]] bool says_its_turns(const Robot& robot);
+
 /// In the order in which their values stand everywhere.
 [[nodiscard]] std::vector<SoughtConstant> sought_constants(const Robot& robot);
 

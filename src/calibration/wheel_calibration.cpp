@@ -260,8 +260,8 @@ void read_constants(WheelCalibration& result, const std::vector<double>& g, cons
     const Channel channel = constants[k].channel;
     const double ratio = constants[k].ratio(g[k]);
     if (robot.drive != DriveKind::differential) {
-      const bool multiplies =
-          channel == Channel::turn || channel == Channel::wheels || channel == Channel::sideways;
+      const bool multiplies = channel == Channel::turn || channel == Channel::wheels ||
+                              channel == Channel::travel || channel == Channel::sideways;
       result.constants.push_back({channel, {g[k], multiplies ? (1.0 + g[k]) * sd : sd}});
     } else if (channel == Channel::difference) {
       result.diameter_ratio = Calibrated{ratio, ratio * sd};

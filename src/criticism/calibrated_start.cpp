@@ -30,24 +30,32 @@ constexpr double kHalf = 0.5;       // of the difference between two axles
 /// them; a calibration's act one after the other.
 struct DriveFactors {
   double travel = 0.0, turn = 0.0, difference = 0.0;
+  double drift = 0.0;  ///< rad/s
 };
 
 DriveFactors factors_of(const Model& calibrated) {
   DriveFactors result;
   double radii = 0.0;
   int wheels = 0;
-  for (const Effect& one : calibrated.effects) {
-    const double g = one.coefficients.empty() ? 0.0 : one.coefficients.front();
+  const std::vector<calibration::SoughtConstant> constants =
+      calibration::sought_constants(calibrated.robot);
+  const std::vector<double> values = calibration::in_force(calibrated);
+  auto value = values.begin();
+  for (const calibration::SoughtConstant& one : constants) {
+    const double g = *value++;
     if (one.channel == Channel::turn) result.turn += g;
     if (one.channel == Channel::difference) result.difference += g;
-    if (one.channel == Channel::wheels) result.travel += g;
+    if (one.channel == Channel::wheels || one.channel == Channel::travel) result.travel += g;
+    if (one.channel == Channel::drift) result.drift += g;
     if (wheel_of(one.channel)) {
       radii += g;
       ++wheels;
     }
   }
   if (wheels > 0) result.travel += radii / wheels;
-  const double turn = (1.0 + result.turn) * (1.0 + result.travel);
+  // A turn that is said for itself is not the wheels'.
+  const double with = calibration::says_its_turns(calibrated.robot) ? 1.0 : 1.0 + result.travel;
+  const double turn = (1.0 + result.turn) * with;
   result.turn = turn - 1.0;
   result.difference *= turn;
   return result;
@@ -195,6 +203,7 @@ CalibratedStart start_of_constants(const std::vector<DrivenRecording>& recording
     if (one.channel == Channel::travel) one.coefficients = {factors.travel};
     if (one.channel == Channel::turn) one.coefficients = {factors.turn};
     if (one.channel == Channel::difference) one.coefficients = {factors.difference};
+    if (one.channel == Channel::drift) one.coefficients = {factors.drift};
     if (const auto place = places.find(one.channel); place != places.end()) {
       one.coefficients = {place->second};
       result.far_places = result.far_places || is_far_place(one.channel, place->second);

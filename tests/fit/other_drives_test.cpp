@@ -12,6 +12,7 @@
 #include "trussmap/dead_reckoning.hpp"
 #include "trussmap/fit_model.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -223,22 +224,40 @@ TEST(OtherDrivesCalibration, FindsEachDrivesConstants) {
   }
 }
 
-/// A unicycle has no wheels that could differ: the scale of its travel, and that of its turns.
-TEST(OtherDrivesCalibration, FindsAUnicyclesScales) {
+/// What says how far it went, and how far it turned, has a factor of each, and a bias of its turns:
+/// a unicycle, or columns that do.
+TEST(OtherDrivesCalibration, FindsTheFactorsAndTheBiasOfTurnsThatAreSaid) {
+  constexpr double kTravel = 0.04;
+  constexpr double kTurn = -0.1;
+  constexpr double kBias = 0.02;  // rad/s, by which it says too much
   std::mt19937_64 random(37);
   OtherDrive drive = other_drive(DriveKind::unicycle);
   drive.model.noise.left = drive.model.noise.right = 0.002;
   const testing::Wheels shown = [](const Twist& row) {
-    return std::vector<double>{row.f / 1.04, row.a / 0.9};
+    return std::vector<double>{row.f / (1.0 + kTravel),
+                               row.a / (1.0 + kTurn) + kBias * testing::kOtherRow};
   };
-  const WheelCalibration found =
-      calibrate_wheels({driven_by(drive, noisy(drive, shown, random))}, drive.model);
-  ASSERT_EQ(found.constants.size(), 2U);
-  // Turns are scaled by both, travel by the scale alone.
-  EXPECT_EQ(found.constants[0].channel, Channel::turn);
-  EXPECT_NEAR(found.constants[0].g.value, 0.9 - 1.04, 4.0 * found.constants[0].g.sd);
-  EXPECT_NEAR(found.constants[1].g.value, 0.04, 4.0 * found.constants[1].g.sd);
-  EXPECT_LT(found.constants[0].g.sd + found.constants[1].g.sd, 0.02);
+  Recording recording = recorded(drive, noisy(drive, shown, random));
+  Model columns = drive.model;
+  columns.robot.drive = DriveKind::wheels;
+  columns.robot.matrix = Eigen::MatrixXd::Zero(3, 2);
+  columns.robot.matrix(0, 0) = columns.robot.matrix(2, 1) = 1.0;
+  for (const Model& model : {drive.model, columns}) {
+    const WheelCalibration found = calibrate_wheels({with_wheels(recording, model.robot)}, model);
+    EXPECT_TRUE(found.undetermined.empty());
+    ASSERT_EQ(found.constants.size(), 3U);
+    for (const DriveConstant& one : found.constants) {
+      const double expected = one.channel == Channel::turn    ? kTurn
+                              : one.channel == Channel::drift ? -kBias * (1.0 + kTurn)
+                                                              : kTravel;
+      EXPECT_NEAR(one.g.value, expected, 4.0 * one.g.sd) << name_of(one.channel);
+      EXPECT_LT(one.g.sd, one.channel == Channel::drift ? 0.002 : 0.01) << name_of(one.channel);
+    }
+    const std::vector<RobotConstant> list = robot_constants(model, found).list;
+    const auto bias = std::ranges::find(list, "turn bias", &RobotConstant::name);
+    ASSERT_NE(bias, list.end());
+    EXPECT_NEAR(bias->after, kBias, 4.0 * bias->sd);
+  }
 }
 
 /// A stated gain that is a sixth of the true one is no start for least squares.
