@@ -200,6 +200,24 @@ std::optional<ModelFit> those_that_matter(const std::vector<DrivenRecording>& re
   return sure;
 }
 
+/// Where nothing tells ahead from back, a robot that backs fits as well as one that goes ahead: it
+/// goes ahead. Fitted from a start of its own, for all of the map is turned.
+std::optional<ModelFit> going_ahead(const std::vector<DrivenRecording>& recordings,
+                                    const ModelFit& given, const ModelFit& found) {
+  const std::size_t first = given.model.effects.size();
+  std::vector<Effect> constants(found.model.effects.begin() + static_cast<std::ptrdiff_t>(first),
+                                found.model.effects.end());
+  const auto backs = std::find_if(constants.begin(), constants.end(), [](const Effect& one) {
+    return one.channel == Channel::travel && 1.0 + one.coefficients.front() < 0.0;
+  });
+  if (backs == constants.end()) return std::nullopt;
+  double& g = backs->coefficients.front();
+  g = -(1.0 + g) - 1.0;
+  const std::optional<ModelFit> ahead = fitted_afresh(recordings, given, constants);
+  if (!ahead || !does_as_well(*ahead, found)) return std::nullopt;
+  return those_that_matter(recordings, given, *ahead);
+}
+
 /// Far from the right constants the gate takes right measurements for wrong ones: here it only
 /// looks at what comes of them all.
 std::optional<ModelFit> those_without_gate(const std::vector<DrivenRecording>& recordings,
@@ -286,6 +304,8 @@ std::optional<GrossConstants> sure_constants(const std::vector<DrivenRecording>&
     sure = better_of(std::move(sure), those_without_gate(recordings, given, constants, start));
   }
   if (!sure || !explains_much(*sure, given)) return std::nullopt;
+  if (std::optional<ModelFit> ahead = going_ahead(recordings, given, *sure))
+    sure = std::move(ahead);
   if (is_far_off(sure) && predicts_worse(recordings, given, *sure, legs)) return std::nullopt;
   return GrossConstants{surest_first(recordings, with_fewest(recordings, *sure, first), first),
                         first};

@@ -170,7 +170,6 @@ TEST(SlowGrossConstants, AWheelThatCountsBackIsFoundBesideAGyro) {
   }
 }
 
-/// No calibration leads anywhere without survey, truth and fixes: turns and returns do.
 /// Neither travel and wheelbase, nor on the verge of what is laid out for its noise.
 TEST(SlowGrossConstants, BothWheelsBesideAGyroAreOneConstant) {
   for (const double g : {-0.5, -0.1}) {
@@ -190,6 +189,7 @@ TEST(SlowGrossConstants, BothWheelsBesideAGyroAreOneConstant) {
   }
 }
 
+/// No calibration leads anywhere without survey, truth and fixes: turns and returns do.
 TEST(SlowGrossConstants, AWheelFiveTimesAsLargeIsFoundByRangesAlone) {
   SimulationSettings settings = small_world(1025);
   settings.uneven = true;
@@ -240,6 +240,22 @@ TEST(SlowGrossConstants, WhereRangesAloneMeasureADistanceTheyAreTakenAtTheirWord
     EXPECT_EQ(names_in(*found), std::vector<std::string>{name});
     EXPECT_NEAR(found->fit.model.effects.back().coefficients.at(0), effect.coefficients[0], 0.01);
   }
+}
+
+/// A robot that backs sees the same ranges: it is taken to go ahead.
+TEST(SlowGrossConstants, WhereNothingTellsAheadFromBackTheRobotGoesAhead) {
+  SimulationSettings settings = small_world(1281);
+  settings.uneven = true;
+  settings.gyro = true;
+  settings.no_survey = true;
+  settings.ranges_alone = true;
+  const SimulatedRecording one = simulate(settings, {catalogue_effect("wheelbase", {-0.5})});
+  const std::vector<DrivenRecording> driven{testing::driven(one.drive.recording)};
+  const auto found =
+      gross_constants(driven, fit_model(driven, one.model, gated_fit()), LegOptions{});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(names_in(*found), std::vector<std::string>{"wheelbase"});
+  EXPECT_NEAR(found->fit.model.effects.back().coefficients.at(0), -0.5, 0.01);
 }
 
 TEST(SlowGrossConstants, AskForNoScaleThatNothingMeasures) {
