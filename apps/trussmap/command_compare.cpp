@@ -36,6 +36,8 @@ void run_compare(const CompareCommand& options) {
   const Session session = read_session(options.input);
   const ComparisonReport report = compare(session, [&progress] { progress.next(); });
   const std::optional<Tolerance> tolerance = judged(options.tolerance, report.found.held_out);
+  const std::optional<NextStep> next =
+      next_step(next_command(report.found), options.input, options.input.model);
   Files files;
   if (!options.input.json.empty()) {
     files.emplace_back(options.input.json, results::json_text(results::Reported<ComparisonReport>{
@@ -43,8 +45,8 @@ void run_compare(const CompareCommand& options) {
   }
   if (options.page.wanted()) {
     const std::string subject = subject_of(options.input.recordings, options.input.model);
-    const Page page = with_next(comparison_page(evidence_of(report.fit, report.found), subject),
-                                next_command(report.found), options.input, options.input.model);
+    const Page page =
+        with_next(comparison_page(evidence_of(report.fit, report.found), subject), next);
     add_page(
         files,
         with_tolerance(with_drive(page, session.model.robot, session.rows.recordings), tolerance),
@@ -52,10 +54,10 @@ void run_compare(const CompareCommand& options) {
   }
   files.write();
   progress.end();
-  fmt::print("{}{}",
+  fmt::print("{}{}{}",
              comparison_text(report.found, session.model.noise, report.noise_budget, options.worst,
                              style_of(stdout)),
-             notes_text(session.rows.notes));
+             notes_text(session.rows.notes), next_text(next));
   end_by(tolerance);
 }
 

@@ -41,6 +41,8 @@ void run_diagnose(const DiagnoseCommand& options) {
   Session session = read_session(options.input);
   const DiagnosisReport report = diagnose(session, [&progress] { progress.next(); });
   const std::optional<Tolerance> tolerance = judged(options.tolerance, report.found.held_out);
+  const std::optional<NextStep> next =
+      next_step(next_command(report.found), options.input, options.input.model);
   Files files;
   if (!options.input.json.empty()) {
     files.emplace_back(options.input.json, results::json_text(results::Reported<DiagnosisReport>{
@@ -52,8 +54,7 @@ void run_diagnose(const DiagnoseCommand& options) {
                                       evidence_of(session.rows.recordings, report.fit, report.found,
                                                   diagnose_options(session.options)),
                                       subject_of(options.input.recordings, options.input.model));
-    const Page page =
-        with_next(found, next_command(report.found), options.input, options.input.model);
+    const Page page = with_next(found, next);
     add_page(files,
              with_tolerance(with_drive(with_constants(page, report.constants), session.model.robot,
                                        session.rows.recordings),
@@ -63,10 +64,11 @@ void run_diagnose(const DiagnoseCommand& options) {
   add_floor_maps(files, report.found.places, options.floor_map);
   files.write();
   progress.end();
-  fmt::print(
-      "{}{}{}{}", diagnosis_text(report.found, report.noise_budget, options.list, style_of(stdout)),
-      constants_text(report.constants, style_of(stdout)),
-      floor_maps_text(report.found.places, options.floor_map), notes_text(session.rows.notes));
+  fmt::print("{}{}{}{}{}",
+             diagnosis_text(report.found, report.noise_budget, options.list, style_of(stdout)),
+             constants_text(report.constants, style_of(stdout)),
+             floor_maps_text(report.found.places, options.floor_map),
+             notes_text(session.rows.notes), next_text(next));
   end_by(tolerance);
 }
 

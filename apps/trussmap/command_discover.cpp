@@ -77,8 +77,11 @@ void run_discover(const DiscoverCommand& options) {
       discover(session, [&told](const DiscoveryStage& stage) { told.part(stage); });
   told.page();
   const std::optional<Tolerance> tolerance = judged(options.tolerance, report.found.last.held_out);
+  const bool kept = !options.out.empty();
+  const std::optional<NextStep> next = next_step(next_command(report.found, kept), options.input,
+                                                 kept ? options.out : options.input.model);
   Files files;
-  if (!options.out.empty()) files.emplace_back(options.out, format_model(report.found.found.model));
+  if (kept) files.emplace_back(options.out, format_model(report.found.found.model));
   if (!options.input.json.empty()) {
     files.emplace_back(options.input.json, results::json_text(results::Reported<DiscoveryReport>{
                                                &report, &session.rows.notes, tolerance}));
@@ -88,9 +91,7 @@ void run_discover(const DiscoverCommand& options) {
         report.found,
         evidence_of(session.rows.recordings, report.found, diagnose_options(session.options)),
         subject_of(options.input.recordings, options.input.model));
-    const bool kept = !options.out.empty();
-    const Page page = with_next(found, next_command(report.found, kept), options.input,
-                                kept ? options.out : options.input.model);
+    const Page page = with_next(found, next);
     add_page(files,
              with_tolerance(with_drive(with_constants(page, report.constants), session.model.robot,
                                        session.rows.recordings),
@@ -100,9 +101,10 @@ void run_discover(const DiscoverCommand& options) {
   files.write();
   told.end();
   fmt::print(
-      "{}{}{}",
+      "{}{}{}{}",
       discovery_text(report.found, session.model.noise, report.noise_budget, style_of(stdout)),
-      constants_text(report.constants, style_of(stdout)), notes_text(session.rows.notes));
+      constants_text(report.constants, style_of(stdout)), notes_text(session.rows.notes),
+      next_text(next));
   end_by(tolerance);
 }
 

@@ -12,9 +12,16 @@
 
 namespace trussmap::app {
 
-/// The page with the command, if there is one: of the same recordings and what of them is used, and
-/// this model. What it writes has a usual name.
-[[nodiscard]] Page with_next(const Page& page, const std::optional<NextCommand>& next,
-                             const ModelRecordingsOptions& input, const std::string& model);
+/// The command as a line, if there is one: of the same recordings, used in the same way, and this
+/// model. What it writes has a usual name.
+[[nodiscard]] std::optional<NextStep> next_step(const std::optional<NextCommand>& next,
+                                                const ModelRecordingsOptions& input,
+                                                const std::string& model);
+
+/// The page with it, if there is one.
+[[nodiscard]] Page with_next(const Page& page, const std::optional<NextStep>& next);
+
+/// "\nNext, to ... :\n  trussmap ...\n"; empty where there is none.
+[[nodiscard]] std::string next_text(const std::optional<NextStep>& next);
 
 }  // namespace trussmap::app

@@ -61,6 +61,10 @@ Page page(const ComparisonResult& self) {
                     self.input.recordings());
 }
 
+std::optional<NextCommand> next(const ComparisonResult& self) {
+  return next_command(self.report.found);
+}
+
 py::list table(const ComparisonResult& self, const std::string& what) {
   if (what == "trends") return table_of(self.report.found.trends);
   if (what == "legs") return table_of(self.report.found.worst);
@@ -88,6 +92,7 @@ void add_comparison(py::module_& module) {
                                     "A model set against recordings: is it consistent, where does "
                                     "it fail?");
   show(type, text, page);
+  show_next(type, next);
   show_responses(type, evidence,
                  "Errors against what they go with most, the most telling first: bins and curves.");
   add_fields<ComparisonResult, ComparisonReport>(

@@ -63,6 +63,10 @@ Page page(const DiagnosisResult& self) {
       self.model.robot, self.input.recordings());
 }
 
+std::optional<NextCommand> next(const DiagnosisResult& self) {
+  return next_command(self.report.found);
+}
+
 py::list table(const DiagnosisResult& self, const std::string& what) {
   if (what == "candidates") return table_of(self.report.found.findings);
   if (what == "noise") {
@@ -121,6 +125,7 @@ void add_diagnosis(py::module_& module) {
   add_rows(module);
   py::class_<DiagnosisResult> type(module, "Diagnosis", "Which physical effect is missing?");
   show(type, text, page);
+  show_next(type, next);
   show_constants(type, constants);
   show_responses(
       type, evidence,

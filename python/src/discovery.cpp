@@ -93,6 +93,10 @@ Page page(const DiscoveryResult& self) {
       self.input.model().robot, self.input.recordings());
 }
 
+std::optional<NextCommand> next(const DiscoveryResult& self) {
+  return next_command(self.report.found, true);
+}
+
 py::list table(const DiscoveryResult& self, const std::string& what) {
   if (what == "steps") return table_of(self.report.found.steps);
   if (what == "effects") return table_of(self.report.found.found.effects);
@@ -125,6 +129,7 @@ void add_discovery(py::module_& module) {
                                    "Effects diagnosed, added and fitted for as long as that is "
                                    "justified.");
   show(type, text, page);
+  show_next(type, next);
   show_constants(type, constants);
   show_responses(
       type, evidence,

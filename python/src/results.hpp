@@ -82,4 +82,20 @@ void show_constants(py::class_<Result>& type, RobotConstants (*constants)(const 
       "Constants to paste into the robot's software, a dict each: name, old, new, sd, unit, note.");
 }
 
+/// What helps on.
+template <typename Result>
+void show_next(py::class_<Result>& type, std::optional<NextCommand> (*next)(const Result&)) {
+  type.def_property_readonly(
+      "next_command",
+      [next](const Result& self) -> py::object {
+        const std::optional<NextCommand> one = next(self);
+        if (!one) return py::none();
+        std::string command(one->command);
+        if (!one->options.empty()) command += " " + std::string(one->options);
+        return py::make_tuple(std::move(command), std::string(one->what_for));
+      },
+      "What helps on, and what it does: (\"discover\", \"adds what is missing, and what shows "
+      "behind it\"); None where a look at the floor, or at what happened, does.");
+}
+
 }  // namespace trussmap::python

@@ -27,6 +27,11 @@ class Results(unittest.TestCase):
         self.assertLess(fitted.heldout.arrival_rms_m, 0.1 * fitted.without_effects["heldout"].arrival_rms_m)
         self.assertEqual(trussmap.compare(RIDDLE, fitted.model).verdict, "consistent")
 
+    def test_say_what_helps_on(self):
+        self.assertEqual(self.comparison.next_command[0], "diagnose")
+        self.assertEqual(self.diagnosis.next_command[0], "discover")
+        self.assertEqual(trussmap.discover(RIDDLE, MODEL).next_command[0], "build")
+
     def test_cannot_be_changed(self):
         for result in (self.diagnosis, self.comparison, self.map, self.diagnosis.candidates[0]):
             with self.assertRaises(AttributeError):

@@ -93,6 +93,34 @@ TEST(CriticismCommands, CompareHasTheKeysOfItsFormat) {
   }
 }
 
+/// The command line after "Next (...):", without its first word.
+std::string next_line(const std::string& output) {
+  const std::size_t next = output.find("\nNext (");
+  if (next == std::string::npos) return "";
+  const std::size_t line = output.find("\n  trussmap ", next) + 12;
+  return output.substr(line, output.find('\n', line) - line);
+}
+
+TEST(CriticismCommands, SayWhichCommandHelpsOnAsALineToRun) {
+  const ScratchFolder scratch;
+  const std::string found = (scratch.path() / "found.toml").string();
+  const Ran compared =
+      run_trussmap("compare " + kRiddleFolder + " --model " + kNominal + " --gate 5 --holdout 0.2");
+  const std::string diagnose = next_line(compared.output);
+  EXPECT_EQ(diagnose,
+            "diagnose " + kRiddleFolder + " --model " + kNominal + " --gate 5 --holdout 0.2");
+  const Ran diagnosed = run_trussmap(diagnose);
+  ASSERT_EQ(diagnosed.status, 0) << diagnosed.output;
+  std::string discover = next_line(diagnosed.output);
+  const std::size_t out = discover.find("found.toml");
+  ASSERT_NE(out, std::string::npos) << diagnosed.output;
+  discover.replace(out, 10, found);
+  const Ran discovered = run_trussmap(discover);
+  ASSERT_EQ(discovered.status, 0) << discovered.output;
+  EXPECT_EQ(next_line(discovered.output),
+            "build " + kRiddleFolder + " --model " + found + " --out map.graphml");
+}
+
 TEST(CriticismCommands, AToleranceIsPassedOrFailed) {
   const ScratchFolder scratch;
   const std::string page = (scratch.path() / "page.html").string();
