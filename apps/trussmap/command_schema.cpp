@@ -49,6 +49,7 @@ Json schema() {
   maker.define<results::CatalogueReport>("effects");
   maker.define<results::ExploreReport>("explore");
   maker.define<FleetReport>("fleet-report");
+  maker.define<RunContrast>("contrast");
   maker.define<results::PlanReport>("plan");
   maker.define<results::Revealed>("reveal");
   maker.define<results::SimulationReport>("simulate");

@@ -19,6 +19,7 @@ void setup_calibrate(const Command& app);
 void setup_check(const Command& app);
 void setup_compare(const Command& app);
 void setup_completion(const Command& app, const CLI::App& whole);
+void setup_contrast(const Command& app);
 void setup_convert(const Command& app);
 void setup_diagnose(const Command& app);
 void setup_discover(const Command& app);

@@ -120,6 +120,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_check(commands);
   trussmap::app::setup_compare(commands);
   trussmap::app::setup_completion(commands, app);
+  trussmap::app::setup_contrast(commands);
   trussmap::app::setup_convert(commands);
   trussmap::app::setup_diagnose(commands);
   trussmap::app::setup_discover(commands);

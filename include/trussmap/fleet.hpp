@@ -32,6 +32,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -200,5 +201,52 @@ struct FleetReport {
 /// Throws InputError where rows are of different models or there are none, std::invalid_argument
 /// unless 0 < level < 1. Rows in any order, same report.
 [[nodiscard]] FleetReport fleet_report(std::vector<FleetRow> rows, double level = 0.05);
+
+// ----------------------------------------
+// Two runs of one robot: before and after a repair, or a change of its software. From what the
+// commands wrote as JSON, not from recordings.
+
+/// A figure that a run tells.
+struct RunFigure {
+  std::string name;    ///< "wheelbase", "effect hard iron: sin(heading)", "chi2/dof"
+  std::string unit;    ///< "m"; empty: a number
+  double value = 0.0;  ///< of "m" of legs' ends the root mean square
+  double sd = 0.0;     ///< its standard error; 0: not told
+  double dof = 0.0;    ///< of errors, in place of a standard error; else 0
+};
+
+struct RunFigures {
+  std::string verdict;  ///< "misfit"; may be empty
+  std::vector<RunFigure> figures;
+};
+
+/// What compare, fit, diagnose, discover or calibrate wrote with --json: errors, constants to
+/// paste, effects. Throws InputError where it is none of that, or cannot be read.
+[[nodiscard]] RunFigures read_run_figures(const std::filesystem::path& file);
+
+/// A figure in both runs, or in one of them.
+struct FigureChange {
+  std::string name;
+  std::string unit;
+  std::optional<RunFigure> before, now;
+  /// That chance alone makes them differ so much: of errors by the F distribution of the ratio of
+  /// their mean squares, of what has standard errors by the normal one; none where a run does not
+  /// tell it, or not how surely.
+  std::optional<double> p_value;
+  bool changed = false;  ///< at the level, over all that have a p-value (Holm)
+};
+
+struct RunContrast {
+  std::string before, now;  ///< verdicts
+  double level = 0.05;
+  std::vector<FigureChange> figures;
+
+  [[nodiscard]] bool any_changed() const;
+  [[nodiscard]] std::size_t told() const;  ///< figures that have a p-value
+};
+
+/// Of runs with different recordings: from the same ones differences are smaller than by chance.
+[[nodiscard]] RunContrast contrast_runs(const RunFigures& before, const RunFigures& now,
+                                        double level = 0.05);
 
 }  // namespace trussmap

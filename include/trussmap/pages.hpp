@@ -44,6 +44,7 @@ struct DiscoveryEvidence;
 struct FitEvidence;
 struct FleetReport;
 struct RobotConstants;
+struct RunContrast;
 struct TourMap;
 struct TourResult;
 struct EffectPreview;
@@ -116,6 +117,7 @@ struct TruthCalibration {
                                   const std::string& subject);
 [[nodiscard]] Page fit_page(const FitEvidence& evidence, const std::string& subject);
 [[nodiscard]] Page fleet_page(const FleetReport& report, const std::string& subject);
+[[nodiscard]] Page contrast_page(const RunContrast& contrast, const std::string& subject);
 [[nodiscard]] Page map_page(const BuiltMap& built, const std::string& subject);
 [[nodiscard]] Page noise_page(const NoiseCalibration& found, const std::string& subject);
 [[nodiscard]] Page square_page(const SquareCalibration& found, const std::string& subject);

@@ -35,6 +35,8 @@
 
 namespace trussmap {
 
+struct RunContrast;
+
 enum class TextStyle { plain, coloured };
 
 // Parts.
@@ -125,6 +127,10 @@ struct TestedDrives {
 /// sentence: a page's verdict.
 [[nodiscard]] std::string calibration_verdict(const WheelCalibration& found,
                                               const CalibrationValidation& held);
+
+/// A table of the figures of both runs, and what changed.
+[[nodiscard]] std::string contrast_text(const RunContrast& contrast,
+                                        TextStyle style = TextStyle::plain);
 
 /// Constants to paste: lines of TOML, then those of other programs; nothing where there are none.
 [[nodiscard]] std::string constants_text(const RobotConstants& constants,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// What fleet report writes.
+// What fleet report and contrast write.
 #pragma once
 
 #include "results/common.hpp"
@@ -100,5 +100,32 @@ inline constexpr auto kDescribed<FleetReport> = described(
     field("pooled_tests", &FleetReport::tests, "of every candidate alone"),
     field("heldout_rms_m", &FleetReport::held_out_rms, "by robot"),
     field("notes", &FleetReport::notes, "in words"));
+
+// ----------------------------------------
+// What contrast writes.
+
+template <>
+inline constexpr auto kDescribed<RunFigure> = described(
+    field("value", &RunFigure::value, "in the figure's unit"),
+    field(
+        "sd", [](const RunFigure& one) { return unless_zero(one.sd); }, "its standard error"),
+    field(
+        "dof", [](const RunFigure& one) { return unless_zero(one.dof); }, "of an error"));
+
+template <>
+inline constexpr auto kDescribed<FigureChange> = described(
+    field("name", &FigureChange::name, "of the figure"),
+    field("unit", &FigureChange::unit, "its; empty: a number"),
+    field("before", &FigureChange::before, "null: that run does not tell it"),
+    field("now", &FigureChange::now, "likewise"),
+    field("p_value", &FigureChange::p_value, "that chance alone makes them differ so far"),
+    field("changed", &FigureChange::changed, "at the level, over all figures (Holm)"));
+
+template <>
+inline constexpr auto kDescribed<RunContrast> =
+    described(field("verdict_before", &RunContrast::before, "of the run before"),
+              field("verdict_now", &RunContrast::now, "of the run now"),
+              share("level", &RunContrast::level, "of significance"),
+              field("figures", &RunContrast::figures, "that either run tells"));
 
 }  // namespace trussmap::results

@@ -27,9 +27,9 @@ using testing::run_trussmap;
 using testing::ScratchFolder;
 
 const std::vector<std::string> kCommands = {
-    "add",      "adjust",  "build", "calibrate", "compare", "convert", "diagnose",
-    "discover", "effects", "fit",   "merge",     "noise",   "plan",    "reveal",
-    "simulate", "tape",    "tour",  "umbmark",   "watch"};
+    "add",      "adjust",   "build",   "calibrate", "compare", "contrast", "convert",
+    "diagnose", "discover", "effects", "fit",       "merge",   "noise",    "plan",
+    "reveal",   "simulate", "tape",    "tour",      "umbmark", "watch"};
 
 TEST(Command, HelpIsThereForEveryCommand) {
   const std::string all = run_trussmap("--help").output;
@@ -320,13 +320,14 @@ TEST(Command, ASessionThatMeetsNoLandmarkOfTheOthersIsNamed) {
 TEST(Command, AWordThatIsNoCommandIsNamed) {
   const Ran ran = run_trussmap("polish x");
   EXPECT_EQ(ran.status, 2);
-  EXPECT_EQ(ran.output,
-            "trussmap: \"polish\" is no command, expected one of add, adjust, apply, build, "
-            "calibrate, check, "
-            "compare, completion, convert, diagnose, discover, effects, explore, fit, fleet, "
-            "manual, merge, "
-            "noise, plan, "
-            "reveal, schema, serve, simulate, tape, tour, umbmark, watch\n");
+  EXPECT_EQ(
+      ran.output,
+      "trussmap: \"polish\" is no command, expected one of add, adjust, apply, build, "
+      "calibrate, check, "
+      "compare, completion, contrast, convert, diagnose, discover, effects, explore, fit, fleet, "
+      "manual, merge, "
+      "noise, plan, "
+      "reveal, schema, serve, simulate, tape, tour, umbmark, watch\n");
 }
 
 TEST(Command, ASessionGivenTwiceIsRefused) {

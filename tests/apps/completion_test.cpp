@@ -88,7 +88,7 @@ TEST(Completion, BashCompletesCommandsOptionsAndWords) {
     return text;
   };
   EXPECT_EQ(completed("trussmap diag"), "diagnose");
-  EXPECT_EQ(completed("trussmap co"), "compare completion convert");
+  EXPECT_EQ(completed("trussmap co"), "compare completion contrast convert");
   EXPECT_EQ(completed("trussmap diagnose rec --exc"), "--exclude");
   EXPECT_EQ(completed("trussmap diagnose rec --without su"), "survey");
   EXPECT_EQ(completed("trussmap completion ''"), "bash zsh fish");

@@ -18,6 +18,32 @@ namespace {
 using testing::run_trussmap;
 using testing::ScratchFolder;
 
+TEST(ContrastCommand, NamesWhatARepairChanged) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  for (const int k : {1, 2}) {
+    const std::string draw =
+        fmt::format("simulate --mesh 4x4 --tours 3 --effect wheelbase={1} --seed {2} --out {0}s{2}",
+                    at, k == 1 ? "0.03" : "0", k);
+    ASSERT_EQ(run_trussmap(draw).status, 0);
+    const testing::Ran ran = run_trussmap(
+        fmt::format("calibrate {0}s{1} --model {0}s1/model.toml --json {0}{1}.json", at, k));
+    ASSERT_EQ(ran.status, 0) << ran.output;
+  }
+  const testing::Ran ran = run_trussmap(
+      fmt::format("contrast {0}1.json {0}2.json --json {0}c.json --html {0}c.html", at));
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  EXPECT_EQ(ran.output.rfind("changed: wheelbase (+0.0", 0), 0U) << ran.output;
+  const auto figures = testing::read_json(at + "c.json").at("figures");
+  for (const auto& one : figures) {
+    EXPECT_EQ(one.at("changed").get<bool>(), one.at("name") == "wheelbase") << one;
+  }
+  EXPECT_NE(read_file(at + "c.html").find("changed: wheelbase"), std::string::npos);
+  const testing::Ran same = run_trussmap(fmt::format("contrast {0}1.json {0}1.json", at));
+  EXPECT_EQ(same.output.rfind("nothing changed beyond chance", 0), 0U) << same.output;
+  EXPECT_EQ(run_trussmap(fmt::format("contrast {0}1.json {0}c.json", at)).status, 2);
+}
+
 TEST(FleetCommand, AddsMergesAndReports) {
   const ScratchFolder scratch;
   const std::string at = scratch.path().string() + "/";
