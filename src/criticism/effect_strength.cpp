@@ -9,6 +9,16 @@
 #include <vector>
 
 namespace trussmap::criticism {
+namespace {
+
+/// Of all measurements. What is merged where the robot rests goes with how it is believed to move.
+double rows_of(const ModelFit& fit) {
+  double rows = 0.0;
+  for (const estimation::Measurement& one : fit.state->problem.measurements) rows += one.rows;
+  return rows;
+}
+
+}  // namespace
 
 double wald(const ModelFit& of, std::size_t effect) {
   const fitting::FitState& fit = *of.state;
@@ -34,7 +44,9 @@ double scatter_left(const ModelFit& fit) {
 }
 
 bool does_as_well(const ModelFit& with_fewer, const ModelFit& fit, std::size_t fewer) {
-  return chi2_of_all(with_fewer) - chi2_of_all(fit) <
+  const double more = chi2_of_all(with_fewer) - chi2_of_all(fit);
+  const double expected = rows_of(with_fewer) - rows_of(fit);
+  return more - expected * scatter_left(fit) <
          static_cast<double>(fewer) * kWorthKeeping * scatter_left(fit);
 }
 

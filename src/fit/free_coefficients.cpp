@@ -29,6 +29,14 @@ EffectColumns columns_of_common(const FitState& fit) {
   return columns;
 }
 
+/// The standard deviation of what was known of a coefficient: of a factor that is large, of its
+/// own size.
+double known_before(const Effect& effect, std::size_t place) {
+  const double sd = facts_of(effect.channel).prior_sd;
+  const bool factor = effects::is_wheel_factor(effect) && place < effect.coefficients.size();
+  return factor ? sd * std::max(1.0, std::abs(1.0 + effect.coefficients[place])) : sd;
+}
+
 /// The last of those that the data tell too little of gives way: the others may do without it.
 bool hold_the_uncertain(const FitTask& task, const estimation::RecordingSystem& system,
                         Fitting& now) {
@@ -41,7 +49,7 @@ bool hold_the_uncertain(const FitTask& task, const estimation::RecordingSystem& 
     const double share =
         1.0 / (covariance(at, at) * std::max(system.border().col(at).squaredNorm(), 1e-300));
     const double uncertainty =
-        std::sqrt(covariance(at, at)) * one.largest / facts_of(effect.channel).prior_sd;
+        std::sqrt(covariance(at, at)) * one.largest / known_before(effect, one.place);
     if (share >= kLeastShare && uncertainty <= kLargestUncertainty) continue;
     const bool uncertain = uncertainty > kLargestUncertainty;
     hold_coefficient(task, unknown[k], uncertain ? NotFitted::uncertain : NotFitted::faint,
