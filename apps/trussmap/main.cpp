@@ -154,8 +154,8 @@ int run(int argc, char** argv) {
     return other.status();
   } catch (const CLI::ParseError& error) {
     return complain(error, kBadInput);
-  } catch (const trussmap::InputError& error) {
-    return complain(error, kBadInput);
+  } catch (const trussmap::InputError& error) {  // a line, whatever the file holds
+    return complain(trussmap::escaped_controls(error.what()), kBadInput);
   } catch (const trussmap::app::UsageError& error) {
     return complain(error, kBadInput);
   } catch (const std::filesystem::filesystem_error& error) {  // an output folder, mostly

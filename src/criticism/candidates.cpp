@@ -5,6 +5,7 @@
 #include "criticism/bells.hpp"
 #include "criticism/driven_variables.hpp"
 #include "drive/wheel_kinematics.hpp"
+#include "effects/catalogue_record.hpp"
 #include "effects/channel_physics.hpp"
 #include "effects/place_patterns.hpp"
 #include "effects/steering.hpp"
@@ -209,10 +210,15 @@ Candidates of_family(const CatalogueEntry& entry, const Grounds& grounds) {
   return found;
 }
 
-/// A wheel beside the middle before a sensor there, where no motion tells which it is.
-double prior_of(Channel channel) {
+/// What every robot has is twice as likely as what few have; a wheel beside the middle comes before
+/// a sensor there, where no motion tells which it is.
+double prior_of(const CatalogueEntry& entry) {
+  constexpr double kEveryRobotHasIt = 0.7;
   constexpr double kBefore = 0.1;
-  return effects::is_wheels_place(channel) ? kBefore : 0.0;
+  const effects::CatalogueRecord* record = effects::find_record(entry.name);
+  double prior = record != nullptr && record->robot_constant ? kEveryRobotHasIt : 0.0;
+  if (effects::is_wheels_place(entry.channel)) prior += kBefore;
+  return prior;
 }
 
 /// Whether it is of a left and a right wheel that change direction each for itself.
@@ -243,7 +249,7 @@ Candidates of_catalogue(const Grounds& grounds) {
       append(found, of_family(entry, grounds));
     } else {
       one.effect = catalogue_effect(entry);
-      one.log_prior = prior_of(entry.channel);
+      one.log_prior = prior_of(entry);
       found.push_back(one);
     }
   }

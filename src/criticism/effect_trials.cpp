@@ -15,7 +15,6 @@ namespace trussmap::criticism {
 namespace {
 
 constexpr std::size_t kMostRivals = 4;
-constexpr double kBetter = 0.98;  // of the arrival error, to be preferred
 constexpr double kSame = 0.9999;  // cosine of what is the same effect
 
 double arrival_of(Trial& trial, const std::vector<DrivenRecording>& recordings,
@@ -30,6 +29,17 @@ double arrival_of(Trial& trial, const std::vector<DrivenRecording>& recordings,
     }
   }
   return trial.held_out->arrival_rms;
+}
+
+/// Of the held-out legs, and beyond what chance makes of so few.
+bool predicts_better(Trial& one, Trial& other, const std::vector<DrivenRecording>& recordings,
+                     const LegOptions& legs) {
+  constexpr double kBetter = 0.98;  // of the arrival error
+  const double arrival = arrival_of(one, recordings, legs);
+  const double than = arrival_of(other, recordings, legs);
+  if (!(arrival < kBetter * than)) return false;
+  return std::isinf(than) ||
+         validation::rise_in_sds(*one.held_out, *other.held_out) > kBeyondChance;
 }
 
 }  // namespace
@@ -89,10 +99,7 @@ std::size_t best_of(std::vector<Trial>& trials, const std::vector<DrivenRecordin
   for (std::size_t k = 1; k < trials.size(); ++k) {
     const double gain = cost(trials[best]) - cost(trials[k]);
     if (gain < -kDecisive) continue;
-    if (gain < kDecisive && !(arrival_of(trials[k], recordings, legs) <
-                              kBetter * arrival_of(trials[best], recordings, legs))) {
-      continue;
-    }
+    if (gain < kDecisive && !predicts_better(trials[k], trials[best], recordings, legs)) continue;
     best = k;
   }
   return best;

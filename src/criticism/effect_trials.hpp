@@ -48,7 +48,8 @@ struct Trial {
                                   const std::vector<DrivenRecording>& recordings,
                                   const LegOptions& legs);
 
-/// chi^2 decides where it can, else held-out legs, else the order of the diagnosis.
+/// chi^2 decides where it can, else held-out legs where they do beyond chance, else the order of
+/// the diagnosis.
 [[nodiscard]] std::size_t best_of(std::vector<Trial>& trials,
                                   const std::vector<DrivenRecording>& recordings,
                                   const LegOptions& legs);

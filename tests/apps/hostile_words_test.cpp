@@ -4,6 +4,7 @@
 // Whatever a command is given, it ends by itself, in its own words, on one line, and writes over
 // nothing that it reads.
 #include "scratch_folder.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -112,6 +113,21 @@ TEST_F(HostileWords, FilesOfNoSense) {
 }
 
 // Comparisons with what is no number are all false.
+TEST_F(HostileWords, AValueOfTwoLinesIsToldInOne) {
+  const std::string riddle = std::string(TRUSSMAP_SOURCE_DIR) + "/maps/riddle";
+  ASSERT_EQ(run_trussmap("build " + riddle + " --model " + riddle + "/model.toml --out " +
+                         at("m.graphml"))
+                .status,
+            0);
+  std::string map = read_file(at("m.graphml"));
+  const std::string key = "<data key=\"n_c_xx\">";
+  const std::size_t value = map.find(key);
+  ASSERT_NE(value, std::string::npos) << map;
+  map.insert(value + key.size(), "1\n");
+  scratch_.write("split.graphml", map);
+  refused("convert " + at("split.graphml") + " " + at("m.yaml"), "expected a finite number");
+}
+
 TEST_F(HostileWords, OptionsThatAreNoNumbers) {
   const std::string compare = "compare " + at("rec") + " --model " + at("model.toml");
   for (const char* value : {"nan", "inf", "-inf", "-nan"}) {
