@@ -29,7 +29,10 @@ void put_constants_first(const std::vector<DrivenRecording>& recordings, const M
   if (!others) {
     result.with_missing = validation::metrics_of(result.held_out);
   }
-  result.held_out = predict_held_out(recordings, given, options.legs);
+  // Beside legs that no model with the constants can be judged by there is nothing to compare with.
+  if (!result.held_out.legs.empty()) {
+    result.held_out = predict_held_out(recordings, given, options.legs);
+  }
   std::vector<Finding> first = findings_of(recordings, given, constants, options.legs);
   result.verdict = Diagnosis::Verdict::missing;
   result.objection = Objection::none;

@@ -40,6 +40,17 @@ constexpr double kNegligible = 0.002;  // the same
 constexpr double kFitsAnyway = 0.05;   // p
 constexpr double kExplains = 1e-6;     // p, below which an adjustment warns of chi^2
 
+/// None where the others do not tell the map.
+std::shared_ptr<const validation::HeldOutLegs> held_out(
+    const std::vector<DrivenRecording>& recordings, const ModelFit& fit, LegOptions legs) {
+  try {
+    return std::make_shared<const validation::HeldOutLegs>(recordings, fit, legs);
+  } catch (const SolveError&) {
+    legs.share = 0.0;
+    return std::make_shared<const validation::HeldOutLegs>(recordings, fit, legs);
+  }
+}
+
 /// Reports what a search has found.
 class Diagnostician {
  public:
@@ -49,9 +60,8 @@ class Diagnostician {
         fit_(fit),
         state_(*fit.state),
         options_(options),
-        legs_(known.legs && known.of == fit.state
-                  ? known.legs
-                  : std::make_shared<const validation::HeldOutLegs>(recordings, fit, options.legs)),
+        legs_(known.legs && known.of == fit.state ? known.legs
+                                                  : held_out(recordings, fit, options.legs)),
         tests_(state_),
         search_(state_, tests_, {options.level, options.most_missing}, legs_.get()) {}
 

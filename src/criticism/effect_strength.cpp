@@ -11,7 +11,7 @@
 namespace trussmap::criticism {
 namespace {
 
-/// Of all measurements. What is merged where the robot rests goes with how it is believed to move.
+/// Of all measurements: which are laid goes with how the robot is believed to move.
 double rows_of(const ModelFit& fit) {
   double rows = 0.0;
   for (const estimation::Measurement& one : fit.state->problem.measurements) rows += one.rows;
