@@ -28,6 +28,7 @@
 #include "trussmap/fit_model.hpp"
 #include "trussmap/held_out.hpp"
 
+#include <cmath>
 #include <compare>
 #include <cstddef>
 #include <filesystem>
@@ -234,6 +235,10 @@ struct FigureChange {
   /// tell it, or not how surely.
   std::optional<double> p_value;
   bool changed = false;  ///< at the level, over all that have a p-value (Holm)
+
+  // Where both runs tell it.
+  [[nodiscard]] double change() const { return now->value - before->value; }
+  [[nodiscard]] double change_sd() const { return std::hypot(before->sd, now->sd); }
 };
 
 struct RunContrast {

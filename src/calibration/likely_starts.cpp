@@ -22,8 +22,9 @@ std::vector<double> at_start(std::vector<double> g, const GrossStart& start, con
     if (constants[k].channel == Channel::turn) g[k] = (1.0 + start.turn) / (1.0 + turned) - 1.0;
     if (constants[k].channel == Channel::difference) g[k] = start.difference;
     if (constants[k].channel == Channel::steer) g[k] += start.steer;
-    if (constants[k].channel == Channel::wheels && start.travel) g[k] = way;
-    if (constants[k].channel == Channel::travel && start.travel) g[k] = way;
+    const bool scale =
+        constants[k].channel == Channel::wheels || constants[k].channel == Channel::travel;
+    if (scale && start.travel) g[k] = way;
   }
   return g;
 }

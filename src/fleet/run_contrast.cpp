@@ -77,8 +77,17 @@ RunFigures figures_in(const json& whole) {
   return run;
 }
 
+std::optional<RunFigure> same_in(const RunFigures& run, const RunFigure& figure) {
+  const auto found = std::ranges::find_if(run.figures, [&figure](const RunFigure& one) {
+    return one.name == figure.name && one.unit == figure.unit;
+  });
+  return found == run.figures.end() ? std::nullopt : std::optional(*found);
+}
+
 /// That two figures are the same but for chance; nothing where one does not say how sure it is.
-std::optional<double> p_value(const RunFigure& before, const RunFigure& now) {
+std::optional<double> p_value(const FigureChange& change) {
+  const RunFigure& before = *change.before;
+  const RunFigure& now = *change.now;
   if (before.dof > 0.0 && now.dof > 0.0) {
     // Of errors: sums of squares, each over its own degrees of freedom.
     const double power = before.unit.empty() ? 1.0 : 2.0;
@@ -88,9 +97,9 @@ std::optional<double> p_value(const RunFigure& before, const RunFigure& now) {
     const double below = statistics::fisher_p_value(1.0 / ratio, before.dof, now.dof);
     return std::min(1.0, 2.0 * std::min(above, below));
   }
-  const double sd = std::hypot(before.sd, now.sd);
+  const double sd = change.change_sd();
   if (!(before.sd > 0.0) || !(now.sd > 0.0) || !std::isfinite(sd)) return std::nullopt;
-  return statistics::chi2_p_value(std::pow((now.value - before.value) / sd, 2), 1);
+  return statistics::chi2_p_value(std::pow(change.change() / sd, 2), 1);
 }
 
 }  // namespace
@@ -121,22 +130,13 @@ RunContrast contrast_runs(const RunFigures& before, const RunFigures& now, doubl
   RunContrast result{before.verdict, now.verdict, level, {}};
   for (const RunFigure& one : before.figures) {
     FigureChange change{one.name, one.unit, one, std::nullopt, std::nullopt, false};
-    const auto other = std::ranges::find_if(now.figures, [&one](const RunFigure& candidate) {
-      return candidate.name == one.name && candidate.unit == one.unit;
-    });
-    if (other != now.figures.end()) {
-      change.now = *other;
-      change.p_value = p_value(one, *other);
-    }
+    change.now = same_in(now, one);
+    if (change.now) change.p_value = p_value(change);
     result.figures.push_back(std::move(change));
   }
   for (const RunFigure& one : now.figures) {
-    const bool known = std::ranges::any_of(before.figures, [&one](const RunFigure& other) {
-      return other.name == one.name && other.unit == one.unit;
-    });
-    if (!known) {
-      result.figures.push_back({one.name, one.unit, std::nullopt, one, std::nullopt, false});
-    }
+    if (same_in(before, one)) continue;
+    result.figures.push_back({one.name, one.unit, std::nullopt, one, std::nullopt, false});
   }
   std::vector<double> p_values;
   for (const FigureChange& one : result.figures) {

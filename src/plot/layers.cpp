@@ -30,6 +30,20 @@ void make_unique(std::vector<std::string>& texts) {
   }
 }
 
+void add_intervals(Chart& chart, const std::string& axis, const std::vector<NamedInterval>& rows) {
+  chart.height = bars_height(rows.size());
+  if (rows.empty()) return;
+  ChartLayer layer{LayerKind::intervals, "", {{""}, {axis}, {"95 % from"}, {"to"}}, "1"};
+  for (const NamedInterval& row : rows) {
+    chart.y.categories.push_back(row.name);
+    layer.columns[0].texts.push_back(row.name);
+    layer.columns[1].numbers.push_back(row.value);
+    layer.columns[2].numbers.push_back(row.value - row.half);
+    layer.columns[3].numbers.push_back(row.value + row.half);
+  }
+  chart.layers.push_back(std::move(layer));
+}
+
 void add_shares(Chart& chart, const std::string& legend, std::vector<double> distances,
                 const std::string& unit, const std::string& colour) {
   constexpr std::size_t kMostPoints = 300;

@@ -30,6 +30,16 @@ void make_unique(std::vector<std::string>& texts);
 void add_shares(Chart& chart, const std::string& legend, std::vector<double> distances,
                 const std::string& unit, const std::string& colour);
 
+/// A figure with half of its 95 % interval.
+struct NamedInterval {
+  std::string name;
+  double value = 0.0;
+  double half = 0.0;
+};
+/// One below the other, each a category of its own, along `axis`; the chart is as high as they
+/// need.
+void add_intervals(Chart& chart, const std::string& axis, const std::vector<NamedInterval>& rows);
+
 /// 95 % ellipses of landmarks. Those without a covariance (0) are left out.
 struct PlacedEllipse {
   std::string name;

@@ -4,12 +4,12 @@
 // Two runs of one robot, as text and as a page.
 #include "plot/layers.hpp"
 #include "report/page.hpp"
+#include "report/quantity_cells.hpp"
 #include "trussmap/fleet.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/texts.hpp"
 
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -32,15 +32,10 @@ std::string unit_of(const FigureChange& one) {
   return scale_of(figure) > 1.0 ? "mm" : figure.unit;
 }
 
-std::string value_text(const RunFigure& one) {
-  const double scale = scale_of(one);
-  if (one.dof > 0.0) return fmt::format("{:.3g}", scale * one.value);
-  const QuantityText text = quantity_text(one.value, one.sd);
-  return text.error.empty() ? text.value : fmt::format("{} \u00b1 {}", text.value, text.error);
-}
-
 std::string value_text(const std::optional<RunFigure>& one) {
-  return one ? value_text(*one) : "not told";
+  if (!one) return "not told";
+  if (one->dof > 0.0) return fmt::format("{:.3g}", scale_of(*one) * one->value);
+  return with_error(one->value, one->sd);
 }
 
 /// Of errors how many times as large, else the difference.
@@ -50,9 +45,8 @@ std::string change_text(const FigureChange& one) {
     if (!(one.before->value > 0.0)) return "";
     return fmt::format("\u00d7 {:.3g}", one.now->value / one.before->value);
   }
-  const double change = one.now->value - one.before->value;
-  const QuantityText text = quantity_text(change, std::hypot(one.before->sd, one.now->sd));
-  const std::string sign = change > 0.0 ? "+" : "";
+  const QuantityText text = quantity_text(one.change(), one.change_sd());
+  const std::string sign = one.change() > 0.0 ? "+" : "";
   return one.p_value ? fmt::format("{}{} \u00b1 {}", sign, text.value, text.error)
                      : sign + text.value;
 }
@@ -105,25 +99,14 @@ plot::Chart changes_chart(const RunContrast& contrast) {
       "What is significant over all figures together is in the table.";
   const char* axis = "change [standard errors]";
   chart.x = {.title = axis, .zero = true};
-  plot::ChartLayer layer{
-      plot::LayerKind::intervals, "", {{""}, {axis}, {"95 % from"}, {"to"}}, "1"};
+  chart.layers.push_back({plot::LayerKind::upright, "", {{"as before", {0.0}}}, "faint"});
+  std::vector<plot::NamedInterval> rows;
   for (const FigureChange& one : contrast.figures) {
     if (!one.p_value || one.now->dof > 0.0) continue;
-    const double z = (one.now->value - one.before->value) / std::hypot(one.before->sd, one.now->sd);
-    chart.y.categories.push_back(one.name);
-    layer.columns[0].texts.push_back(one.name);
-    layer.columns[1].numbers.push_back(z);
-    layer.columns[2].numbers.push_back(z - plot::kNormal95);
-    layer.columns[3].numbers.push_back(z + plot::kNormal95);
+    rows.push_back({one.name, one.change() / one.change_sd(), plot::kNormal95});
   }
-  chart.height = plot::bars_height(chart.y.categories.size());
-  chart.layers.push_back({plot::LayerKind::upright, "", {{"as before", {0.0}}}, "faint"});
-  chart.layers.push_back(std::move(layer));
+  plot::add_intervals(chart, axis, rows);
   return chart;
-}
-
-bool has_rows(const plot::Chart& chart) {
-  return !chart.y.categories.empty();
 }
 
 }  // namespace
@@ -165,7 +148,7 @@ Page contrast_page(const RunContrast& contrast, const std::string& subject) {
   }
   PageSection section{"Before and now", {}};
   plot::Chart chart = changes_chart(contrast);
-  if (has_rows(chart)) section.blocks.emplace_back(ChartRow{std::move(chart)});
+  if (!chart.y.categories.empty()) section.blocks.emplace_back(ChartRow{std::move(chart)});
   section.blocks.emplace_back(std::move(table));
   page.sections.push_back(std::move(section));
   return page;

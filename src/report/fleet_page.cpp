@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "plot/layers.hpp"
 #include "report/page.hpp"
+#include "report/quantity_cells.hpp"
 #include "trussmap/fleet.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
@@ -17,11 +18,6 @@ namespace trussmap {
 using namespace report;
 
 namespace {
-
-std::string quantity(double value, double sd) {
-  const QuantityText text = quantity_text(value, sd);
-  return text.error.empty() ? text.value : fmt::format("{} \u00b1 {}", text.value, text.error);
-}
 
 std::string heading_of(const FleetFinding& finding, const FleetCoefficient& one) {
   return finding.coefficients.size() == 1 ? finding.effect
@@ -44,8 +40,8 @@ PageTable findings_table(const FleetReport& report) {
     for (const FleetCoefficient& one : finding.coefficients) {
       const std::string effect = heading_of(finding, one);
       if (one.common && one.goes_with.empty()) {
-        row(effect, fmt::format("common to all {} robots", one.robots), quantity(one.mean, one.sd),
-            one.p_common);
+        row(effect, fmt::format("common to all {} robots", one.robots),
+            with_error(one.mean, one.sd), one.p_common);
       }
       for (const FleetKey& key : one.goes_with) {
         std::string keys = key.key;
@@ -53,7 +49,7 @@ PageTable findings_table(const FleetReport& report) {
         row(effect, fmt::format("goes with {}", keys), "", key.p_adjusted);
         for (const FleetGroup& group : key.groups) {
           row(effect, fmt::format("{} {} ({} robots)", key.key, group.value, group.robots),
-              quantity(group.mean, group.sd), group.p_value);
+              with_error(group.mean, group.sd), group.p_value);
         }
       }
       if (one.p_tau < report.level) {
@@ -61,16 +57,17 @@ PageTable findings_table(const FleetReport& report) {
             one.p_tau);
       }
       if (one.all_drift) {
-        row(effect, "drift in all robots, per day", quantity(one.slope, one.slope_sd), one.p_slope);
+        row(effect, "drift in all robots, per day", with_error(one.slope, one.slope_sd),
+            one.p_slope);
       }
       for (const FleetRobot& robot : one.members) {
         if (robot.differs) {
-          row(effect, fmt::format("robot {} differs", robot.robot), quantity(robot.value, robot.sd),
-              robot.p_differs, Tone::bad);
+          row(effect, fmt::format("robot {} differs", robot.robot),
+              with_error(robot.value, robot.sd), robot.p_differs, Tone::bad);
         }
         if (robot.drifts) {
           row(effect, fmt::format("robot {} drifts, per day", robot.robot),
-              quantity(robot.slope, robot.slope_sd), robot.p_drifts, Tone::bad);
+              with_error(robot.slope, robot.slope_sd), robot.p_drifts, Tone::bad);
         }
       }
     }
@@ -179,10 +176,10 @@ PageTable robots_table(const FleetReport& report) {
     for (const FleetCoefficient& one : finding.coefficients) {
       table.headings.push_back(heading_of(finding, one));
       for (const FleetRobot& robot : one.members) {
-        std::string text = quantity(robot.shrunken, robot.shrunken_sd);
+        std::string text = with_error(robot.shrunken, robot.shrunken_sd);
         if (robot.differs) text += ", differs";
         if (robot.drifts) {
-          text += fmt::format(", drifts by {} a day", quantity(robot.slope, robot.slope_sd));
+          text += fmt::format(", drifts by {} a day", with_error(robot.slope, robot.slope_sd));
         }
         rows[robot.robot].push_back(text);
         if (robot.differs || robot.drifts) tones[robot.robot] = Tone::bad;

@@ -13,6 +13,11 @@ std::vector<std::string> quantity_cells(const Estimate& estimate) {
   return {text.value, text.error.empty() ? "" : "\u00b1 " + text.error};
 }
 
+std::string with_error(double value, double standard_error) {
+  const QuantityText text = quantity_text(value, standard_error);
+  return text.error.empty() ? text.value : fmt::format("{} \u00b1 {}", text.value, text.error);
+}
+
 std::vector<std::string> sigma_heading() {
   return {"runs within (expected)", "1 sigma", "2 sigma", "3 sigma"};
 }

@@ -24,23 +24,16 @@ plot::Chart interval_chart(const char* id, const char* title, const char* captio
   chart.title = title;
   chart.caption = caption;
   chart.x = {.title = axis, .zero = true};
-  plot::ChartLayer layer{
-      plot::LayerKind::intervals, "", {{""}, {axis}, {"95 % from"}, {"to"}}, "1"};
-  for (const Row& row : rows) {
-    if (!row.found) continue;
-    const double value = factor * (row.found->value - nominal);
-    const double reach = factor * plot::kNormal95 * row.found->sd;
-    chart.y.categories.emplace_back(row.name);
-    layer.columns[0].texts.emplace_back(row.name);
-    layer.columns[1].numbers.push_back(value);
-    layer.columns[2].numbers.push_back(value - reach);
-    layer.columns[3].numbers.push_back(value + reach);
-  }
-  chart.height = plot::bars_height(chart.y.categories.size());
   if (nominal != 0.0) {
     chart.layers.push_back({plot::LayerKind::upright, "", {{"nominal", {0.0}}}, "faint"});
   }
-  if (!chart.y.categories.empty()) chart.layers.push_back(std::move(layer));
+  std::vector<plot::NamedInterval> intervals;
+  for (const Row& row : rows) {
+    if (!row.found) continue;
+    intervals.push_back({row.name, factor * (row.found->value - nominal),
+                         factor * plot::kNormal95 * row.found->sd});
+  }
+  plot::add_intervals(chart, axis, intervals);
   return chart;
 }
 

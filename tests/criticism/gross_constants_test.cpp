@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,6 +40,17 @@ SimulationSettings small_world(std::uint64_t seed) {
 
 ModelFit given(const SimulatedRecording& one) {
   return fit_model({one.drive.recording}, one.model);
+}
+
+std::optional<GrossConstants> found_under_a_gate(const SimulatedRecording& one) {
+  const std::vector<DrivenRecording> driven{testing::driven(one.drive.recording)};
+  return gross_constants(driven, fit_model(driven, one.model, gated_fit()), LegOptions{});
+}
+
+/// As of a robot that sees its landmarks from afar alone.
+void leave_out_standing(SimulatedRecording& one) {
+  std::erase_if(one.drive.recording.sightings,
+                [](const Sighting& sighting) { return sighting.standing(); });
 }
 
 std::vector<std::string> names_in(const GrossConstants& constants) {
@@ -77,9 +89,7 @@ TEST(SlowGrossConstants, AWheelOfAnotherSizeIsOneConstant) {
   for (const auto& [channel, g] :
        {std::pair{Channel::left, -0.8}, std::pair{Channel::right, 2.0}}) {
     const SimulatedRecording one = simulate(small_world(6), {Effect{"wheel", channel, {"1"}, {g}}});
-    const std::vector<DrivenRecording> driven{testing::driven(one.drive.recording)};
-    const auto found =
-        gross_constants(driven, fit_model(driven, one.model, gated_fit()), LegOptions{});
+    const auto found = found_under_a_gate(one);
     ASSERT_TRUE(found) << g;
     EXPECT_EQ(names_in(*found),
               std::vector<std::string>{channel == Channel::left ? "left wheel" : "right wheel"});
@@ -197,11 +207,8 @@ TEST(SlowGrossConstants, AWheelFiveTimesAsLargeIsFoundByRangesAlone) {
   settings.no_survey = true;
   settings.range_sensor = true;
   SimulatedRecording one = simulate(settings, {Effect{"right", Channel::right, {"1"}, {4.0}}});
-  std::erase_if(one.drive.recording.sightings,
-                [](const Sighting& sighting) { return sighting.standing(); });
-  const std::vector<DrivenRecording> driven{testing::driven(one.drive.recording)};
-  const auto found =
-      gross_constants(driven, fit_model(driven, one.model, gated_fit()), LegOptions{});
+  leave_out_standing(one);
+  const auto found = found_under_a_gate(one);
   ASSERT_TRUE(found);
   EXPECT_EQ(names_in(*found), std::vector<std::string>{"right wheel"});
   EXPECT_NEAR(found->fit.model.effects.back().coefficients.at(0), 4.0, 0.02);
@@ -215,9 +222,7 @@ TEST(SlowGrossConstants, AnErrorOfAnotherKindIsFittedByItself) {
   for (const auto& [name, g] :
        {std::pair{"turn asymmetry", 0.25}, std::pair{"twist per spin", 0.2}}) {
     const SimulatedRecording one = simulate(settings, {catalogue_effect(name, {g})});
-    const std::vector<DrivenRecording> driven{testing::driven(one.drive.recording)};
-    const auto found =
-        gross_constants(driven, fit_model(driven, one.model, gated_fit()), LegOptions{});
+    const auto found = found_under_a_gate(one);
     ASSERT_TRUE(found) << name;
     EXPECT_EQ(names_in(*found), std::vector<std::string>{name});
     EXPECT_NEAR(found->fit.model.effects.back().coefficients.at(0), g, 0.03 * g);
@@ -250,9 +255,7 @@ TEST(SlowGrossConstants, WhereNothingTellsAheadFromBackTheRobotGoesAhead) {
   settings.no_survey = true;
   settings.ranges_alone = true;
   const SimulatedRecording one = simulate(settings, {catalogue_effect("wheelbase", {-0.5})});
-  const std::vector<DrivenRecording> driven{testing::driven(one.drive.recording)};
-  const auto found =
-      gross_constants(driven, fit_model(driven, one.model, gated_fit()), LegOptions{});
+  const auto found = found_under_a_gate(one);
   ASSERT_TRUE(found);
   EXPECT_EQ(names_in(*found), std::vector<std::string>{"wheelbase"});
   EXPECT_NEAR(found->fit.model.effects.back().coefficients.at(0), -0.5, 0.01);
@@ -264,9 +267,7 @@ TEST(SlowGrossConstants, ATrackAFifthAsWideIsNamedByASurveyAlone) {
   SimulationSettings settings = small_world(1380);
   settings.uneven = true;
   const SimulatedRecording one = simulate(settings, {catalogue_effect("wheelbase", {4.0})});
-  const std::vector<DrivenRecording> driven{testing::driven(one.drive.recording)};
-  const auto found =
-      gross_constants(driven, fit_model(driven, one.model, gated_fit()), LegOptions{});
+  const auto found = found_under_a_gate(one);
   ASSERT_TRUE(found);
   EXPECT_EQ(names_in(*found), std::vector<std::string>{"wheelbase"});
   const EffectEstimate& size = found->fit.effects.back();
@@ -285,11 +286,8 @@ TEST(SlowGrossConstants, AWheelThatCountsBackIsOneConstantBesideFixes) {
   settings.fix_rate = 0.5;
   SimulatedRecording one = simulate(settings, {});
   negate(one.drive.recording.drive.right);
-  std::erase_if(one.drive.recording.sightings,
-                [](const Sighting& sighting) { return sighting.standing(); });
-  const std::vector<DrivenRecording> driven{testing::driven(one.drive.recording)};
-  const auto found =
-      gross_constants(driven, fit_model(driven, one.model, gated_fit()), LegOptions{});
+  leave_out_standing(one);
+  const auto found = found_under_a_gate(one);
   ASSERT_TRUE(found);
   EXPECT_EQ(names_in(*found), std::vector<std::string>{"right wheel"});
 }
